@@ -62,6 +62,8 @@ struct ObjectSpec {
   std::vector<std::vector<std::string>> exactly_one_of = {};  ///< groups of which one key must be given
   std::vector<std::pair<std::string, std::string>> goes_with =
       {};  ///< the first key is allowed only with the second
+  std::vector<std::pair<std::string, std::string>> elsewhere =
+      {};  ///< keys that are looked for here, and where they are
 
   /// The row of a key, or null. @param variant  the discriminator's value; null: any
   const KeySpec* find(const std::string& key, const std::string* variant) const;

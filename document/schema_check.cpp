@@ -390,7 +390,10 @@ std::string unknownKeyMessage(const std::string& key, const ObjectSpec& spec, co
   }
 
   const std::string word = lowerCase(key);
+  for (const auto& [name, where] : spec.elsewhere)
+    if (word == name) return fmt::format("unknown key {} of the {}; {}", quoted(key), spec.name, where);
   std::vector<std::string> names, with_unit;
+  bool is_other_unit = word.find('_') != std::string::npos;
   for (const KeySpec& row : spec.keys) {
     if (spec.find(row.name, variant) != &row) continue;
     names.push_back(row.name);
@@ -399,11 +402,16 @@ std::string unknownKeyMessage(const std::string& key, const ObjectSpec& spec, co
     if (stem == row.name) continue;
     if (word == stem || startsWith(word, stem + "_") || startsWith(stem, key_stem + "_")) {
       with_unit.push_back(fmt::format("'{}' ({})", row.name, unitOf(row.value)));
+      const std::string unit = row.name.substr(stem.size());
+      const bool has_unit = word.size() > unit.size() && word.substr(word.size() - unit.size()) == unit;
+      is_other_unit = is_other_unit && word != stem && !has_unit &&
+                      word.substr(word.rfind('_')) != row.name.substr(row.name.rfind('_'));
       propose(row.name);
     }
   }
   if (!with_unit.empty()) {
-    return fmt::format("unknown key {}; write {}", quoted(key), joined(with_unit, " or "));
+    return fmt::format("unknown key {}; write {}{}", quoted(key), joined(with_unit, " or "),
+                       is_other_unit ? " and convert the value" : "");
   }
   std::string closest;
   const std::string hint = didYouMean(key, names, &closest);

@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include "emscape/base/log.h"
+#include "emscape/scenario/file/scenario_file.h"
 
 namespace emscape::report {
 
@@ -48,17 +49,27 @@ std::string withoutNumbers(const std::string& text, std::vector<std::string>& nu
     const auto wordAt = [&](std::size_t at) { return at < text.size() && isWordPart(text[at]); };
     const bool is_signed = text[i] == '-' && (i == 0 || !isWordPart(text[i - 1]));
     const std::size_t begin = is_signed ? i + 1 : i;
-    std::size_t end = begin;
-    while (end < text.size() && isDigit(text[end])) ++end;
+    const auto digitsEnd = [&](std::size_t at) {
+      while (at < text.size() && isDigit(text[at])) ++at;
+      return at;
+    };
+    const auto exponentEnd = [&](std::size_t at) {
+      if (at >= text.size() || (text[at] != 'e' && text[at] != 'E')) return at;
+      const std::size_t digits =
+          at + 1 + (at + 1 < text.size() && (text[at + 1] == '+' || text[at + 1] == '-'));
+      const std::size_t last = digitsEnd(digits);
+      return last > digits ? last : at;
+    };
+    const std::size_t whole = digitsEnd(begin);
+    const bool has_decimals = whole < text.size() && text[whole] == '.' && digitsEnd(whole + 1) > whole + 1;
+    const std::size_t decimals = has_decimals ? digitsEnd(whole + 1) : whole;
+    std::size_t end = begin;  // of the longest number that is not the begin of a word
+    for (const std::size_t at : {whole, exponentEnd(whole), decimals, exponentEnd(decimals)})
+      if (at > end && !wordAt(at)) end = at;
     const bool may_begin = is_signed || i == 0 || !isWordPart(text[i - 1]);
-    if (end == begin || !may_begin || wordAt(end)) {
+    if (end == begin || !may_begin) {
       form += text[i++];
       continue;
-    }
-    if (end + 1 < text.size() && text[end] == '.' && isDigit(text[end + 1])) {
-      std::size_t decimals = end + 1;
-      while (decimals < text.size() && isDigit(text[decimals])) ++decimals;
-      if (!wordAt(decimals)) end = decimals;
     }
     numbers.push_back(text.substr(i, end - i));
     form += '#';
@@ -75,7 +86,7 @@ double numberIn(const std::string& text) {
 }  // namespace
 
 std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings) {
-  constexpr std::size_t kMaxNames = 5;
+  constexpr std::size_t kMaxNames = 5, kMaxTexts = 3;
   struct Kind {
     std::string of;                                 // the series in front, such as "the original: "
     std::string form;                               // the text with '#' for each number
@@ -83,19 +94,22 @@ std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings
     std::vector<std::string> names;                 // of the first emitters
     std::size_t count = 0;                          // warnings of this form
     std::vector<std::vector<std::string>> numbers;  // by position in the text, one per warning
+    std::vector<std::string> texts;                 // of no emitter
   };
   std::vector<Kind> kinds;
-  std::unordered_map<std::string, std::size_t> kind_of_form;  // of the warnings of emitters
+  std::unordered_map<std::string, std::size_t> kind_of_form, kind_of_text;  // of emitters, and of none
   for (const std::string& warning : warnings) {
     const std::optional<WarningOfEmitter> parts = partsOf(warning);
+    std::vector<std::string> numbers;
     if (!parts) {
-      kinds.push_back({"", warning, {}, {}, 1, {}});
+      const auto [known, is_new] = kind_of_text.emplace(withoutNumbers(warning, numbers), kinds.size());
+      if (is_new) kinds.emplace_back();
+      kinds[known->second].texts.push_back(warning);
       continue;
     }
-    std::vector<std::string> numbers;
     const std::string &of = parts->of, &emitter = parts->emitter, form = withoutNumbers(parts->text, numbers);
     const auto [known, is_new] = kind_of_form.emplace(of + form, kinds.size());
-    if (is_new) kinds.push_back({of, form, {}, {}, 0, {}});
+    if (is_new) kinds.push_back({of, form, {}, {}, 0, {}, {}});
     Kind& kind = kinds[known->second];
     if (kind.emitters.insert(emitter).second && kind.names.size() < kMaxNames) kind.names.push_back(emitter);
     ++kind.count;
@@ -106,7 +120,9 @@ std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings
   std::vector<std::string> lines;
   for (const Kind& kind : kinds) {
     if (kind.emitters.empty()) {
-      lines.push_back(kind.form);
+      const bool is_short = kind.texts.size() <= kMaxTexts;
+      lines.insert(lines.end(), kind.texts.begin(), is_short ? kind.texts.end() : kind.texts.begin() + 1);
+      if (!is_short) lines.back() += fmt::format(" ({} more with other numbers)", kind.texts.size() - 1);
       continue;
     }
     const std::size_t others = kind.emitters.size() - kind.names.size();
@@ -133,8 +149,24 @@ std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings
   return lines;
 }
 
-void logWarnings(const std::vector<std::string>& warnings) {
-  for (const std::string& line : joinedWarnings(warnings)) logWarning(line);
+std::vector<std::string> withoutChecks(std::vector<std::string> warnings, const ReadScenarios& scenarios) {
+  const auto isOfCheck = [&](const std::string& warning) {
+    for (const auto& scenario : scenarios) {
+      for (const std::string& known : warningsOf(*scenario)) {
+        // "A: " of a comparison may be in front
+        const bool ends_so = warning.size() >= known.size() &&
+                             warning.compare(warning.size() - known.size(), known.size(), known) == 0;
+        if (ends_so) return true;
+      }
+    }
+    return false;
+  };
+  warnings.erase(std::remove_if(warnings.begin(), warnings.end(), isOfCheck), warnings.end());
+  return warnings;
+}
+
+void logWarnings(const std::vector<std::string>& warnings, const ReadScenarios& scenarios) {
+  for (const std::string& line : joinedWarnings(withoutChecks(warnings, scenarios))) logWarning(line);
 }
 
 }  // namespace emscape::report

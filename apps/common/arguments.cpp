@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <set>
 
@@ -140,7 +141,11 @@ std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
     if (word.empty() || word.front() == '-') continue;
     std::vector<std::string> names;
     for (const CLI::App* subcommand : last->get_subcommands({})) names.push_back(subcommand->get_name());
-    return "there is no subcommand '" + word + "'" + document::didYouMean(word, names);
+    std::error_code ignored;
+    const std::string hint = std::filesystem::is_regular_file(word, ignored)
+                                 ? "; it is a file: `emscape info` describes it, `emscape view` shows it"
+                                 : document::didYouMean(word, names);
+    return "there is no subcommand '" + word + "'" + hint;
   }
   return plainMessage(*last, error.what());
 }

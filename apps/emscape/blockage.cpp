@@ -97,7 +97,7 @@ int blockage(BlockageCommand command, const GlobalOptions& global) {
   if (!std::isnan(command.elevation_deg)) request.elevation_deg = command.elevation_deg;
   if (!std::isnan(command.beamwidth_deg)) request.beamwidth_deg = command.beamwidth_deg;
   const Blockage blockage = study::computeBlockage(scenario, request);
-  report::logWarnings(blockage.warnings);
+  report::logWarnings(blockage.warnings, {scenario});
   for (const std::string& file : command.outputs) {
     const std::string ending = std::filesystem::path(file).extension();
     if (ending == ".png") {

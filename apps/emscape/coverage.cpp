@@ -88,12 +88,13 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
     return study::computeCoverage(scenario, terrain, *grid, request, target.fieldOptions(), take,
                                   stoppingProgress(global));
   });
-  report::logWarnings(warnings);
+  report::logWarnings(warnings, {scenario});
   folder.finish(report::joinedWarnings(warnings));
   if (global.json) {
     printResult(folder.reportJson());
     finishResult();
   } else {
+    for (const std::string& file : folder.collections()) print("All maps: {}/{}\n", command.folder, file);
     print("Report: {}/report.html\n", command.folder);
   }
   return 0;

@@ -88,7 +88,7 @@ void addOutlines(const ExportArguments& arguments, const std::shared_ptr<const s
         scenario, terrain, *grid, request, target.fieldOptions(),
         [&](const study::CoverageMap& map) { outlines->add(map); }, stoppingProgress(global));
   });
-  report::logWarnings(warnings);
+  report::logWarnings(warnings, {scenario});
   outlines->finish();
   Json packets = Json::parse(readWholeText(arguments.file, kMaxOutlineBytes));
   for (Json& packet : Json::parse(readWholeText(scratch.temporary(), kMaxOutlineBytes))) {

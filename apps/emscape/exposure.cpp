@@ -64,7 +64,7 @@ int exposure(const ExposureCommand& command, const GlobalOptions& global) {
     return study::computeExposure(scenario, terrain, request, target.fieldOptions(),
                                   stoppingProgress(global));
   });
-  report::logWarnings(result.warnings);
+  report::logWarnings(result.warnings, {scenario});
   writeStudyOutputs(command.outputs,
                     {[&](const std::string& file) { study::plotExposure(result, size, file); },
                      [&](const std::string& file) { report::writeExposureCsv(result, file); },

@@ -77,10 +77,12 @@ void addWork(const std::shared_ptr<const scenario::Scenario>& scenario, Json& js
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
     const emfield::FieldSolver solver(scenario, terrain, options);
     json["work"] = report::workJson(report::workEstimateOf(solver, *scenario, terrain.get()));
-    json["warnings"] = solver.warnings();
+    std::vector<std::string> warnings = warningsOf(*scenario);
+    for (const std::string& warning : solver.warnings()) warnings.push_back(warning);
+    json["warnings"] = warnings;
   } catch (const Error&) {
     json["work"] = nullptr;
-    json["warnings"] = Json::array();
+    json["warnings"] = warningsOf(*scenario);
   }
 }
 

@@ -34,7 +34,7 @@ int link(const LinkCommand& command, const GlobalOptions& global) {
   report::checkOutputs({{"--csv", command.csv}, {"--plot", command.plot}}, {}, {links.scenario});
   const emfield::LinkOptions options = report::linkOptions(scenario, command.selection);
   links.report = report::computeLinks(links.scenario, options, stoppingProgress(global));
-  report::logWarnings(links.report.warnings);
+  report::logWarnings(links.report.warnings, {links.scenario});
   if (!command.csv.empty()) {
     report::writeCsv(links, command.csv);
     logInfo("wrote " + command.csv);

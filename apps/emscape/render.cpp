@@ -173,11 +173,13 @@ void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
 
 using Sinks = std::vector<std::unique_ptr<PictureSink>>;
 
-Sinks openSinks(const RenderOptions& options, const ViewState& view, const std::string& name, int pictures,
+Sinks openSinks(const RenderOptions& options, const ViewState& view, const FrameSource& source, int pictures,
                 double frames_per_s) {
+  const std::string changes = source.scene() != nullptr ? changesOf(*source.scene()->scenario) : "";
   Sinks sinks;
   for (const std::string& output : options.outputs) {
-    sinks.push_back(playback::makePictureSink(output, name, pictures, view.size, frames_per_s));
+    sinks.push_back(
+        playback::makePictureSink(output, source.name(), pictures, view.size, frames_per_s, changes));
   }
   return sinks;
 }
@@ -254,6 +256,15 @@ void warnOfNoValue(const ViewState& view, const Stage& stage) {
   logWarning(report::noValueWarning(stage.empty_quantity, *scene->scenario, times_s));
 }
 
+/// Warnings of the scenario's check and of the fields, for JSON.
+std::vector<std::string> warningsOf(const Stage& stage) {
+  const playback::LoadedScenario* scene = stage.source->scene();
+  std::vector<std::string> warnings;
+  if (scene != nullptr) warnings = scenario::warningsOf(*scene->scenario);
+  for (const std::string& warning : stage.source->warnings()) warnings.push_back(warning);
+  return report::joinedWarnings(warnings);
+}
+
 /// Writes the file of --save-state: the view, with the colours fitted to the first frame.
 void saveState(const RenderOptions& options, ViewState view, const Stage& stage) {
   if (options.save_state.empty()) return;
@@ -294,7 +305,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   const std::unique_ptr<FrameSource>& source = stage.source;
   Painter& painter = *stage.painter;
   const Sinks sinks =
-      openSinks(options, view, source->name(), source->count(), options.frames_per_s.value_or(kFilmRate));
+      openSinks(options, view, *source, source->count(), options.frames_per_s.value_or(kFilmRate));
   saveState(options, view, stage);
   warnOfNoValue(view, stage);
   if (options.outputs.empty()) return 0;
@@ -320,7 +331,8 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
               {"frames", source->count()},
               {"outputs", options.outputs},
               {"cast_ms", cast_ms},
-              {"seconds", seconds}};
+              {"seconds", seconds},
+              {"warnings", warningsOf(stage)}};
     if (painter.cellPicture()) json["cells"] = cellsJson(*painter.cellPicture());
     printJson(json);
   } else {
@@ -359,7 +371,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   saveState(options, view, stage);
   const std::unique_ptr<FrameSource>& source = stage.source;
   constexpr int kSeveral = 2;
-  const Sinks sinks = openSinks(options, view, source->name(), kSeveral, loop_options.frames_per_s);
+  const Sinks sinks = openSinks(options, view, *source, kSeveral, loop_options.frames_per_s);
 
   // Enough for delays of the encoder.
   constexpr long long kWaitingBytes = 256LL << 20;
@@ -388,7 +400,8 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
               {"mode", render::toString(view.settings.mode)},
               {"rays", raysOf(view)},
               {"outputs", options.outputs},
-              {"budget_ms", loop_options.controller.budget_ms}};
+              {"budget_ms", loop_options.controller.budget_ms},
+              {"warnings", warningsOf(stage)}};
     json.update(report::toJson(report));
     printJson(json);
   }

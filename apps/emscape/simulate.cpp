@@ -16,6 +16,7 @@
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "emscape/playback/series/series_writer.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/quantities.h"
 #include "playback/view/view_settings.h"
 #include "report/runs/no_value.h"
@@ -131,7 +132,8 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
     return opened;
   });
   const playback::SeriesResult result = playback::writeSeries(*series, series_options, progressSink(global));
-  report::logWarnings(series->warnings());
+  std::vector<std::string> warnings = series->warnings();
+  report::logWarnings(warnings);
   for (std::size_t c = 0; c < result.channels.size() && options.range.empty() && options.compare.empty();
        ++c) {
     const playback::ValueRange& range = result.ranges[c];
@@ -139,12 +141,13 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
     const bool is_floor =
         range.max <= static_cast<float>(input.scenario->output.floor) || range.max == 0 || range.max == -1;
     if (range.empty() || (range.min == range.max && is_floor))
-      logWarning(report::noValueWarning(result.channels[c], *input.scenario, times_s));
+      logWarning(warnings.emplace_back(report::noValueWarning(result.channels[c], *input.scenario, times_s)));
   }
 
   const double seconds = watch.lap_ms() / 1000;
   if (global.json) {
-    printJson(report::seriesJson(device, options.folder, result, seconds));
+    warnings.insert(warnings.begin(), warningsOf(*input.scenario).begin(), warningsOf(*input.scenario).end());
+    printJson(report::seriesJson(device, options.folder, result, report::joinedWarnings(warnings), seconds));
   } else {
     logInfo(fmt::format("{} step{} of {} in {}, {:.1f} s", result.steps, result.steps == 1 ? "" : "s",
                         fmt::join(result.channels, ", "), options.folder, seconds));

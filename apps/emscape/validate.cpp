@@ -17,6 +17,7 @@
 #include "report/paths/choices_report.h"
 #include "report/paths/refractivity_report.h"
 #include "report/runs/work_report.h"
+#include "scenario/file/far_outside.h"
 
 namespace emscape::app {
 namespace {
@@ -126,9 +127,11 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, boo
       problems.push_back(problem);
     }
     if (!starts) return;  // reported above
-    choices = emfield::modelChoices(
-        scenario::snapshotAt(scenario, terrain.get(), scenario::timesOf(scenario->clock).front()),
-        terrain.get());
+    const scenario::Snapshot first =
+        scenario::snapshotAt(scenario, terrain.get(), scenario::timesOf(scenario->clock).front());
+    if (const std::string heights = scenario::outsideHeightsText(first, terrain.get()); !heights.empty())
+      problems.push_back({{scenario->file, 0, 0}, Severity::warning, heights});
+    choices = emfield::modelChoices(first, terrain.get());
   } catch (const Error& error) {
     const bool is_first = std::none_of(problems.begin(), problems.end(), isError);
     if (is_first) status = error.code();

@@ -113,7 +113,7 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
     });
   };
   const study::VerticalDiagram diagram = compute(request);
-  report::logWarnings(diagram.warnings);
+  report::logWarnings(diagram.warnings, {scenario});
   stopIfInterrupted();
   writeStudyOutputs(command.outputs,
                     {[&](const std::string& file) { study::plotVertical(diagram, size, file); },

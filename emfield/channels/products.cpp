@@ -67,7 +67,7 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Sce
       task.measure = RadarMeasure::signal_to_jamming;
       task.factor = static_cast<float>(dbToRatio(-requiredSignalToJammerDb(radar)));
       task.lowest = 1 / kMaxMargin;
-      task.ceiling = kMaxMargin;
+      task.ceiling = task.unjammed = kMaxMargin;
       break;
     case Quantity::sclnr_db:
       task.measure = RadarMeasure::root_of_signal_to_clutter_and_noise;

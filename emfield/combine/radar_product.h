@@ -23,8 +23,8 @@ namespace emscape::emfield {
 /// The value that a radar adds to a channel.
 enum class RadarMeasure {
   root_of_signal_to_noise,
-  signal_to_jamming,  ///< S / J, times a factor, within RadarTask::lowest..ceiling: the ceiling without
-                      ///< jamming, the lowest without echo; 0 (nothing) without both
+  signal_to_jamming,  ///< S / J, times a factor, within RadarTask::lowest..ceiling: RadarTask::unjammed
+                      ///< without jamming, the lowest without echo; 0 (nothing) without both
   detection,          ///< probability of detection from S / (C + N + J); 0 without echo
   root_of_signal_to_clutter_and_noise,
   detection_age,  ///< RadarTask::ceiling minus the age (s) of the last pass, if its probability is at least
@@ -72,6 +72,7 @@ struct RadarTask {
   float echo_root = 0;         ///< (m2/W)
   float factor = 1;            ///< of signal_to_jamming
   float lowest = 0, ceiling = 1e30f;
+  float unjammed = 0;        ///< of signal_to_jamming, with an echo; 0: the radar does not count
   DetectionCurveView curve;  ///< detection and its age
   ClutterTask clutter;
   HeardRanges heard;  ///< of detection and its age
@@ -156,7 +157,7 @@ EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root
     const float ratio = task.factor * echo_to_noise;
     const bool is_jammed = ratio < task.ceiling * jamming_to_noise;
     const bool is_bounded = ratio < task.lowest * jamming_to_noise;
-    const float unjammed = echo_to_noise > 0 ? task.ceiling : 0.0f;
+    const float unjammed = echo_to_noise > 0 ? task.unjammed : 0.0f;
     value = is_jammed ? (is_bounded ? task.lowest : ratio / jamming_to_noise) : unjammed;
   } else if constexpr (measure == RadarMeasure::detection) {
     const float probability = task.curve(fastRatioToDb(echo_to_noise / (1 + jamming_to_noise)));

@@ -93,11 +93,12 @@ bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
 bool sameTask(const RadarTask& a, const RadarTask& b) {
   // The jammers and the arcs are in RadarShare; sameLook() compares the look.
   const auto& [measure, reduction, look, look_arcs, look_arc_count, is_cumulative, looks, last_passes,
-               echo_root, factor, lowest, ceiling, curve, clutter, heard, jammers, jammer_count] = a;
+               echo_root, factor, lowest, ceiling, unjammed, curve, clutter, heard, jammers, jammer_count] =
+      a;
   return measure == b.measure && reduction == b.reduction && is_cumulative == b.is_cumulative &&
          looks.everywhere == b.looks.everywhere && echo_root == b.echo_root && factor == b.factor &&
-         lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve) && same(clutter, b.clutter) &&
-         same(heard, b.heard);
+         lowest == b.lowest && ceiling == b.ceiling && unjammed == b.unjammed && same(curve, b.curve) &&
+         same(clutter, b.clutter) && same(heard, b.heard);
 }
 
 bool sameShare(const RadarShare& a, const RadarShare& b) {

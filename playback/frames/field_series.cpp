@@ -7,6 +7,7 @@
 #include "emscape/base/work.h"
 #include "emscape/scenario/model/quantities.h"
 #include "playback/frames/difference_series.h"
+#include "scenario/file/far_outside.h"
 #include "volume/difference.h"
 
 namespace emscape::playback {
@@ -85,6 +86,9 @@ std::vector<std::string> FieldSeries::warnings() const {
   std::vector<std::string> all = difference_ ? difference_->warnings(solver_.warnings()) : solver_.warnings();
   const std::string outside = scenario::outsideClockText(times_s_, input_.scenario->clock);
   if (!outside.empty()) all.push_back(outside);
+  const std::string heights =
+      scenario::outsideHeightsText(snapshotAt(times_s_.front()), input_.terrain.get());
+  if (!heights.empty()) all.push_back(heights);
   return all;
 }
 

@@ -14,6 +14,7 @@
 #include "emscape/volume/format/file.h"
 #include "playback/frames/volume_input.h"
 #include "recording/read_recording.h"
+#include "scenario/file/file_kind.h"
 #include "scenario/terrain/file_names.h"
 
 namespace emscape::playback {
@@ -68,13 +69,20 @@ JsonContent jsonContentOf(const std::string& file) {
   if (volume::isVolumeFile(name.stem())) return JsonContent::header;
   if (fs::file_size(file, ignored) > kMaxJsonBytes) return JsonContent::other;
   const auto json = nlohmann::json::parse(readWholeText(file, kMaxJsonBytes), nullptr, false);
-  if (!json.is_object() || json.contains("emitters") || json.contains("region")) return JsonContent::other;
-  if (json.contains("domain") && json.contains("opacity")) return JsonContent::transfer;
-  if (json.contains("recipe") && json.contains("format_version")) return JsonContent::series;
-  return json.contains("camera") || json.contains("open_panels") ? JsonContent::view : JsonContent::other;
+  switch (scenario::documentKindOf(json)) {
+    case scenario::DocumentKind::transfer:
+      return JsonContent::transfer;
+    case scenario::DocumentKind::series:
+      return JsonContent::series;
+    case scenario::DocumentKind::view:
+      return JsonContent::view;
+    default:
+      return JsonContent::other;
+  }
 }
 
 void requireScenarioFile(const std::string& file) {
+  using scenario::DocumentKind;
   const auto refuse = [&file](const std::string& text) {
     throw Error(ErrorCode::bad_input, {file, 0, 0}, text);
   };
@@ -82,13 +90,13 @@ void requireScenarioFile(const std::string& file) {
     case JsonContent::other:
       return;
     case JsonContent::view:
-      return refuse("a view file, not a scenario: `render` and `view` read it with --state");
+      return refuse(scenario::otherDocumentText(DocumentKind::view, DocumentKind::scenario));
     case JsonContent::transfer:
-      return refuse("a transfer function, not a scenario: `render` and `view` read it with --transfer");
+      return refuse(scenario::otherDocumentText(DocumentKind::transfer, DocumentKind::scenario));
     case JsonContent::header:
       return refuse("the header of a volume: open " + fs::path(file).stem().string() + " beside it");
     case JsonContent::series:
-      return refuse("describes a series of volumes: open its folder");
+      return refuse(scenario::otherDocumentText(DocumentKind::series, DocumentKind::scenario));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/scene.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/volume/statistics.h"
 #include "playback/frames/busy_field.h"
 #include "playback/frames/difference_series.h"
@@ -78,6 +79,7 @@ void Painter::onRenderer(const Use& use) {
 
 void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
   annotations_.title = title;
+  if (scene != nullptr && title == scene->scenario->name) annotations_.title = titleOf(*scene->scenario);
   scene_ = scene ? std::optional(*scene) : std::nullopt;
 }
 

@@ -6,11 +6,13 @@
 
 #include "base/files/folder.h"
 #include "base/files/unfinished_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/volume/format/file.h"
 #include "playback/pictures/video.h"
 #include "playback/series/file_names.h"
+#include "render/picture/png_comment.h"
 
 namespace emscape::playback {
 namespace {
@@ -21,26 +23,35 @@ fs::path folderOf(const fs::path& file) {
   return fs::absolute(file).parent_path();
 }
 
+void writeCommented(const fs::path& file, const render::Image8& picture, const std::string& comment) {
+  const std::string png = render::withPngComment(render::encodePng(picture), comment);
+  writeWhole(file, [&](std::ostream& out) { out << png; });
+}
+
 class OnePng : public PictureSink {
  public:
-  explicit OnePng(fs::path file) : file_(std::move(file)) { removeAbandonedFiles(folderOf(file_)); }
+  OnePng(fs::path file, std::string comment) : file_(std::move(file)), comment_(std::move(comment)) {
+    removeAbandonedFiles(folderOf(file_));
+  }
   void add(int /*number*/, const render::Image8& picture, int /*frames*/) override {
-    render::writePng(file_.string(), picture);
+    writeCommented(file_, picture, comment_);
   }
   void finish() override {}
 
  private:
   const fs::path file_;
+  const std::string comment_;
 };
 
 class PngFolder : public PictureSink {
  public:
-  PngFolder(fs::path folder, const std::string& name) : folder_(std::move(folder)), name_(fileNameOf(name)) {
+  PngFolder(fs::path folder, const std::string& name, std::string comment)
+      : folder_(std::move(folder)), name_(fileNameOf(name)), comment_(std::move(comment)) {
     makeFolder(folder_);
     removeAbandonedFiles(folder_);
   }
   void add(int number, const render::Image8& picture, int /*frames*/) override {
-    render::writePng(fileOf(number).string(), picture);
+    writeCommented(fileOf(number), picture, comment_);
     last_ = std::max(last_, number);
   }
   /// Pictures of an earlier, longer run are the user's: they are named, not removed.
@@ -57,7 +68,7 @@ class PngFolder : public PictureSink {
   fs::path fileOf(int number) const { return volume::seriesFile(folder_, name_, number, "png"); }
 
   const fs::path folder_;
-  const std::string name_;
+  const std::string name_, comment_;
   int last_ = 0;  ///< number of the last picture
 };
 
@@ -95,12 +106,13 @@ void checkPictureOutput(const fs::path& output) {
 }
 
 std::unique_ptr<PictureSink> makePictureSink(const fs::path& output, const std::string& name, int pictures,
-                                             render::ImageSize size, double frames_per_s) {
+                                             render::ImageSize size, double frames_per_s,
+                                             const std::string& comment) {
   switch (kindOf(output)) {
     case OutputKind::video:
       return std::make_unique<Video>(output, size, frames_per_s);
     case OutputKind::folder:
-      return std::make_unique<PngFolder>(output, name);
+      return std::make_unique<PngFolder>(output, name, comment);
     case OutputKind::png:
       break;
   }
@@ -109,7 +121,7 @@ std::unique_ptr<PictureSink> makePictureSink(const fs::path& output, const std::
                 fmt::format("{}: one .png for {} pictures; name one time, a folder or an .mp4",
                             output.string(), pictures));
   }
-  return std::make_unique<OnePng>(output);
+  return std::make_unique<OnePng>(output, comment);
 }
 
 }  // namespace emscape::playback

@@ -24,8 +24,10 @@ class PictureSink {
 void checkPictureOutput(const std::filesystem::path& output);
 
 /// By the extension of `output`: .png (one picture), .mp4, or a folder (no extension) of NAME_0001.png, ....
+/// @param comment  of PNG files; may be empty
 /// @throws Error (usage) for another extension, or a .png for several pictures
 std::unique_ptr<PictureSink> makePictureSink(const std::filesystem::path& output, const std::string& name,
-                                             int pictures, render::ImageSize size, double frames_per_s);
+                                             int pictures, render::ImageSize size, double frames_per_s,
+                                             const std::string& comment);
 
 }  // namespace emscape::playback

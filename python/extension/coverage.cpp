@@ -6,6 +6,7 @@
 #include "playback/frames/open_on_target.h"
 #include "python/extension/module.h"
 #include "report/maps/map_options.h"
+#include "report/warnings.h"
 
 namespace emscape::python {
 namespace {
@@ -101,7 +102,8 @@ MapsAndGrid coverage(const ScenarioHandle& handle, const std::string& heights,
   }
   nb::list described;
   for (study::CoverageMap& map : maps) described.append(describe(std::move(map), grid));
-  return nb::borrow<MapsAndGrid>(nb::make_tuple(described, describe(grid), warnings));
+  return nb::borrow<MapsAndGrid>(
+      nb::make_tuple(described, describe(grid), report::withoutChecks(warnings, {scenario})));
 }
 
 }  // namespace

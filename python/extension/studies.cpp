@@ -59,6 +59,8 @@ std::string profileJson(const ScenarioHandle& handle, const std::string& emitter
   request.to.latitude_deg = latitude_deg;
   request.to.longitude_deg = longitude_deg;
   (agl ? request.to.height_agl_m : request.to.height_msl_m) = height_m;
+  request.option = "to";
+  request.agl_option = "agl=True";
   request.time_s = time_s;
   for (const std::string& model : models) request.models.push_back(propagation::modelNamed(model)->model);
   return dumpJson(report::toJson(report::profileReport(scenario.file, scenario, request)));
@@ -75,7 +77,7 @@ std::string linkJson(const ScenarioHandle& handle, const Names& emitters, const 
   options.times_s = times_s;
   report::NamedLinks links{handle.scenario->file, handle.scenario, {}};
   links.report = report::computeLinks(handle.scenario, options, sink);
-  report::logWarnings(links.report.warnings);
+  report::logWarnings(links.report.warnings, {handle.scenario});
   return dumpJson(report::toJson(links));
 }
 
@@ -107,7 +109,7 @@ std::string exposureJson(const ScenarioHandle& handle, const std::string& platfo
   const study::Exposure result = playback::openOnTarget(backend, [&](const ComputeTarget& target) {
     return study::computeExposure(handle.scenario, terrain, request, target.fieldOptions(), sink);
   });
-  report::logWarnings(result.warnings);
+  report::logWarnings(result.warnings, {handle.scenario});
   return dumpJson(report::exposureJson(result));
 }
 
@@ -141,7 +143,7 @@ std::string verticalJson(const ScenarioHandle& handle, const std::string& emitte
     return study::computeVertical(handle.scenario, terrain, request, target.fieldOptions());
   });
   sink("vertical coverage", 1);
-  report::logWarnings(diagram.warnings);
+  report::logWarnings(diagram.warnings, {handle.scenario});
   return dumpJson(report::verticalJson(diagram, true));
 }
 
@@ -215,7 +217,10 @@ std::string simulateJson(const ScenarioHandle& handle, const std::string& folder
   });
   const playback::SeriesResult result = playback::writeSeries(*series, options, sink);
   report::logWarnings(series->warnings());
-  return dumpJson(report::seriesJson(device, folder, result, watch.lap_ms() / 1000));
+  std::vector<std::string> warnings = warningsOf(*handle.scenario);
+  for (const std::string& warning : series->warnings()) warnings.push_back(warning);
+  return dumpJson(
+      report::seriesJson(device, folder, result, report::joinedWarnings(warnings), watch.lap_ms() / 1000));
 }
 
 /// A study in its folder, and the limit of threads, which is removed at the end.
@@ -271,7 +276,7 @@ std::string studyJson(const std::string& file, const Edits& edits, const std::st
   worker.push_back(fmt::format("{}", std::max(1, open.threads / jobs)));
   study::computeParts(open.loaded, open.folder, missing, backend, {jobs, worker}, sink);
   const report::StudyReport merged = report::mergeParts(open.loaded, open.folder);
-  for (const std::string& warning : merged.warnings) logWarning(warning);
+  report::logWarnings(merged.warnings, {open.loaded.spec.base});
   return dumpJson(report::toJson(merged));
 }
 
@@ -290,7 +295,7 @@ std::string mergeStudy(const std::string& file, const Edits& edits, const std::s
   open.begin(0);
   const FolderLock lock(open.folder.path(), ".study.lock");
   const report::StudyReport merged = report::mergeParts(open.loaded, open.folder);
-  for (const std::string& warning : merged.warnings) logWarning(warning);
+  report::logWarnings(merged.warnings, {open.loaded.spec.base});
   return dumpJson(report::toJson(merged));
 }
 

@@ -240,7 +240,7 @@ std::string ScenarioComparison::finish(const study::Comparison& comparison) {
 std::string finishComparison(study::MapFolder& folder, const study::Comparison& comparison,
                              const study::ComparedScenario& a, const study::ComparedScenario& b,
                              const std::string& quantity) {
-  logWarnings(comparison.warnings);
+  logWarnings(comparison.warnings, {a.scenario, b.scenario});
   folder.finish(joinedWarnings(comparison.warnings), dumpJson(comparisonJson(comparison, a, b)),
                 [&](study::HtmlReport& report) { addSections(report, comparison, quantity); });
   return folder.reportJson();

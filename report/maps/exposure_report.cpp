@@ -23,7 +23,8 @@ Json summaryJson(const ExposureSummary& summary, bool is_emitter) {
             {"fraction", number(summary.fraction)},
             {"unknown_fraction", summary.unknown_fraction},
             {"longest_gap_s", summary.longest_gap_s},
-            {"cumulative_probability", number(summary.cumulative_probability)}};
+            {"cumulative_probability", number(summary.cumulative_probability)},
+            {"cumulative_first_s", number(summary.cumulative_first_s)}};
   if (is_emitter) json["best_fraction"] = summary.best_fraction;
   return json;
 }
@@ -79,26 +80,35 @@ std::string exposureText(const Exposure& exposure) {
             exposure.cross_section);
   }
   out.add("clutter: {}\n", exposure.clutter);
-  out.add("  {:<22} {:>9} {:>8} {:>8} {:>9} {:>9} {:>14} {:>8} {:>14}\n", "emitter", "max", "at s", "first s",
-          "reached", "unknown", "longest gap s", "best", "in any look");
+  out.add("  {:<22} {:>9} {:>8} {:>8} {:>9} {:>9} {:>14} {:>8} {:>12} {:>11}\n", "emitter", "max", "at s",
+          "first s", "reached", "unknown", "longest gap s", "best", "in any look", "from s");
   const auto row = [&](const ExposureSummary& summary, const std::string& best) {
     const bool has_value = std::isfinite(summary.max);
     const auto percents = [](double part) {
       return std::isnan(part) ? "-" : fmt::format("{:.1f} %", 100 * part);
     };
-    out.add("  {:<22} {:>9} {:>8} {:>8} {:>9} {:>9} {:>14g} {:>8} {:>14}\n", summary.name,
+    out.add("  {:<22} {:>9} {:>8} {:>8} {:>9} {:>9} {:>14g} {:>8} {:>12} {:>11}\n", summary.name,
             has_value ? fmt::format("{:.4g}", summary.max) : "-",
             has_value ? fmt::format("{:g}", summary.max_time_s) : "-",
             summary.first_s ? fmt::format("{:g}", *summary.first_s) : "never", percents(summary.fraction),
             percents(summary.unknown_fraction), summary.longest_gap_s, best,
             std::isfinite(summary.cumulative_probability)
                 ? fmt::format("{:.4f}", summary.cumulative_probability)
-                : "-");
+                : "-",
+            !std::isfinite(summary.cumulative_probability) ? "-"
+            : summary.cumulative_first_s                   ? fmt::format("{:g}", *summary.cumulative_first_s)
+                                                           : "never");
   };
   for (const ExposureSummary& summary : exposure.each) {
     row(summary, fmt::format("{:.0f} %", 100 * summary.best_fraction));
   }
   row(exposure.together, "");
+  if (std::isfinite(exposure.together.cumulative_probability)) {
+    out.add(
+        "first s: when one look reaches the threshold; in any look: the probability of a detection in all "
+        "looks "
+        "so far, from s: when that reaches it.\n");
+  }
   if (exposure.together.unknown_fraction > 0) {
     out.add(
         "Unknown where a path crosses missing terrain and no other emitter reaches the threshold; 'reached' "

@@ -37,7 +37,11 @@ study::CoverageRequest requestOf(const MapOptions& options, const scenario::Cloc
 }
 
 study::MapArea areaOf(const MapOptions& options, const scenario::Scenario& scenario) {
-  return options.area.empty() ? study::areaOf(scenario.region) : study::parseArea(options.area);
+  if (options.area.empty()) return study::areaOf(scenario.region);
+  const study::MapArea area = study::parseArea(options.area);
+  if (const std::string mistake = study::mistakenAreaText(area, scenario.region); !mistake.empty())
+    throw Error(ErrorCode::usage, fmt::format("{}area '{}': {}", options.prefix, options.area, mistake));
+  return area;
 }
 
 std::shared_ptr<const study::MapGrid> gridOf(const MapOptions& options, const scenario::Scenario& scenario,

@@ -121,7 +121,7 @@ std::string planText(const PlanReport& plan) {
 
 StudyReport mergeParts(const study::LoadedStudy& loaded, const study::StudyFolder& folder) {
   const std::vector<int> missing = folder.missingParts();
-  const study::StudyResults results = folder.read();
+  study::StudyResults results = folder.read();
   std::vector<std::string> warnings(results.warnings.begin(), results.warnings.end());
   if (results.machines.size() > 1) {
     std::string machines;
@@ -129,10 +129,11 @@ StudyReport mergeParts(const study::LoadedStudy& loaded, const study::StudyFolde
     warnings.push_back("parts were computed on different processors, which may differ in the last digit: " +
                        machines);
   }
+  warnings = joinedWarnings(warnings);
+  results.warnings = {warnings.begin(), warnings.end()};
   folder.writeResults(results);
   auto summary = study::writeStudyReport(folder.path() / "report.html", loaded.spec, loaded.plan, results);
-  return {&loaded, folder.path().string(),   folder.parts(),
-          missing, joinedWarnings(warnings), std::move(summary)};
+  return {&loaded, folder.path().string(), folder.parts(), missing, std::move(warnings), std::move(summary)};
 }
 
 Json toJson(const StudyReport& report) {

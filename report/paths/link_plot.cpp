@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/scenario/file/scenario_file.h"
 #include "render/annotate/plot.h"
 
 namespace emscape::report {
@@ -179,7 +180,7 @@ void plotLinks(const NamedLinks& links, render::ImageSize size, const std::strin
     const int panels = int(!ratios.empty()) + int(!detections.empty());
     const double header = 44 * unit, panel_height = (height - header) / std::max(panels, 1);
     Rect frame{64 * unit, header + 48 * unit, width - right - 124 * unit, panel_height - 100 * unit};
-    const std::string title = fmt::format("{}: {} over time", links.scenario->name,
+    const std::string title = fmt::format("{}: {} over time", titleOf(*links.scenario),
                                           detections.empty() ? "links"
                                           : ratios.empty()   ? "detection of targets"
                                                              : "links and detection of targets");

@@ -13,6 +13,7 @@
 #include "propagation/registry/model_info.h"
 #include "report/text.h"
 #include "scenario/file/named_index.h"
+#include "scenario/scan/scan_sampling.h"
 
 namespace emscape::report {
 namespace {
@@ -26,6 +27,16 @@ using scenario::Scenario;
 
 /// Maximum rows of a table per pair.
 constexpr std::size_t kTableRows = 21;
+
+/// The threshold of detections.
+constexpr double kDetected = 0.5;
+
+/// The first time at which all looks so far detect with the threshold's probability.
+std::optional<double> firstByLooks_s(const Detection& detection) {
+  for (const DetectionRow& row : detection.rows)
+    if (row.cumulative_probability >= kDetected) return row.time_s;
+  return std::nullopt;
+}
 
 /// A value in a table; "-" without one.
 std::string cell(double value, int decimals = 1) {
@@ -160,16 +171,19 @@ void addLinkSummary(Text& out, const NamedLinks& links) {
 
 void addDetectionSummary(Text& out, const NamedLinks& links) {
   if (links.report.detections.empty()) return;
-  out.add("Targets\n  {:<22} {:<22} {:>17} {:>15} {:>14} {:>8}\n", "radar", "target", "SNR dB",
-          "detected from s", "cumulative Pd", "blocked");
+  out.add("Targets\n  {:<22} {:<22} {:>17} {:>15} {:>14} {:>11} {:>8}\n", "radar", "target", "SNR dB",
+          "detected from s", "cumulative Pd", "0.5 from s", "blocked");
   for (const Detection& detection : links.report.detections) {
-    out.add("  {:<22} {:<22} {:>17} {:>15} {:>14} {:>8}\n", emitterName(links, detection.radar),
+    out.add("  {:<22} {:<22} {:>17} {:>15} {:>14} {:>11} {:>8}\n", emitterName(links, detection.radar),
             targetName(links, detection),
             rangeText(detection.rows, [](const DetectionRow& row) { return row.snr_db; }),
             timeText(detection.firstDetection_s()), cell(detection.rows.back().cumulative_probability, 3),
-            fmt::format("{:.0f} %", 100 * blockedShare(detection.rows)));
+            timeText(firstByLooks_s(detection)), fmt::format("{:.0f} %", 100 * blockedShare(detection.rows)));
   }
-  out.add("  detected from: the first time at which one look detects with a probability of 0.5 or more\n\n");
+  out.add(
+      "  detected from: the first time at which one look detects with a probability of 0.5 or more; 0.5 "
+      "from: all "
+      "looks so far\n\n");
 }
 
 void addLink(Text& out, const NamedLinks& links, const Link& link) {
@@ -199,11 +213,14 @@ void addDetection(Text& out, const NamedLinks& links, const Detection& detection
           "RCS dBsm", "SNR dB", ofClutter("speed m/s", "S/(C+N) dB"), "J/S dB", "Pd", "looks", "cumulative",
           "path, where it changes");
   const auto pathOf = [](const DetectionRow& row) { return pathText(row, row.look_pattern_db); };
+  const DetectionRow* next = detection.rows.data();  // the first whose looks are not printed yet
   addThinned(out, detection.rows, pathOf, [&](const DetectionRow& row, const std::string& path) {
+    int looks = 0;
+    for (; next <= &row; ++next) looks += next->looks;
     out.add("  {:>8g} {:>9} {:>9} {:>9} {:>8}{} {:>8} {:>6} {:>6} {:>10}  {}\n", row.time_s, rangeCell(row),
             cell(row.look_pattern_db), cell(ratioToDb(row.rcs_m2)), cell(row.snr_db),
             ofClutter(cell(row.radial_speed_mps.value_or(0)), cell(row.sclnr_db)),
-            cell(row.jammer_to_signal_db), cell(row.detection_probability, 3), row.looks,
+            cell(row.jammer_to_signal_db), cell(row.detection_probability, 3), looks,
             cell(row.cumulative_probability, 3), path);
   });
   out.add("\n");
@@ -247,8 +264,16 @@ emfield::LinkReport computeLinks(const std::shared_ptr<const scenario::Scenario>
                                  const emfield::LinkOptions& options, const ProgressSink& progress) {
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   emfield::LinkReport report = emfield::computeLinks(scenario, terrain.get(), options, progress);
+  report.warnings.insert(report.warnings.begin(), warningsOf(*scenario).begin(), warningsOf(*scenario).end());
   if (terrain) {
     for (std::string& warning : terrain->warnings()) report.warnings.push_back(std::move(warning));
+  }
+  int last_radar = -1;  // detections of one radar follow each other
+  for (const Detection& detection : report.detections) {
+    const scenario::Emitter& radar = scenario->emitters[static_cast<std::size_t>(detection.radar)];
+    std::string text = scenario::mergedLooksText(radar.name, radar.scan, options.times_s);
+    if (!text.empty() && detection.radar != last_radar) report.warnings.push_back(std::move(text));
+    last_radar = detection.radar;
   }
   if (report.links.empty() && report.detections.empty()) {
     throw Error(ErrorCode::bad_input, {scenario->file},
@@ -273,6 +298,7 @@ Json toJson(const NamedLinks& links) {
     of_targets.push_back({{"radar", emitterName(links, detection.radar)},
                           {"target", targetName(links, detection)},
                           {"first_detection_s", number(detection.firstDetection_s())},
+                          {"cumulative_first_s", number(firstByLooks_s(detection))},
                           {"cumulative_probability", detection.rows.back().cumulative_probability},
                           {"rows", rowsJson(detection.rows)}});
   }

@@ -19,6 +19,8 @@
 #include "report/paths/section_plot.h"
 #include "report/paths/waveform_report.h"
 #include "report/text.h"
+#include "scenario/file/far_outside.h"
+#include "scenario/model/ground_tolerance.h"
 
 namespace emscape::report {
 namespace {
@@ -173,8 +175,22 @@ const scenario::Emitter& emitterOf(const ProfileReport& report) {
 
 ProfileReport profileReport(const std::string& file, const scenario::Scenario& scenario,
                             const ProfileRequest& request) {
-  const auto with_point = withPoint(scenario, request.to);
+  const auto refuse = [&](const std::string& text) {
+    throw Error(ErrorCode::usage, request.option + ": " + text);
+  };
+  const scenario::SitePosition& to = request.to;
+  const std::string mistake = scenario::mistakenPlaceText(scenario.region, to.latitude_deg, to.longitude_deg);
+  if (!mistake.empty()) refuse(mistake);
+  const auto with_point = withPoint(scenario, to);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*with_point);
+  if (terrain && to.height_msl_m) {
+    const auto ground_m = static_cast<double>(terrain->heightMsl_m(to.latitude_deg, to.longitude_deg));
+    if (ground_m - *to.height_msl_m > scenario::kGroundTolerance_m)
+      refuse(fmt::format(
+          "{:g} m above mean sea level are {:.1f} m below the ground there, which is at {:.1f} m; {} "
+          "takes the height above ground",
+          *to.height_msl_m, ground_m - *to.height_msl_m, ground_m, request.agl_option));
+  }
   const scenario::Snapshot snapshot = scenario::instantAt(with_point, terrain.get(), request.time_s);
   const PathEnd point{snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m};
   const auto budgetBy = [&](propagation::PropagationModel model) {
@@ -212,6 +228,8 @@ Json toJson(const ProfileReport& report) {
     excess_parts[part.key] = number(part.loss_db);
   Json compared = Json::array();
   for (const Comparison& comparison : report.compared) compared.push_back(toJson(comparison));
+  std::vector<std::string> warnings = warningsOf(*report.snapshot.scenario);
+  warnings.insert(warnings.end(), budget.warnings.begin(), budget.warnings.end());
   return {{"scenario", report.scenario},
           {"emitter", budget.emitter},
           {"time_s", budget.time_s},
@@ -231,7 +249,7 @@ Json toJson(const ProfileReport& report) {
           {"excess_parts_db", excess_parts},
           {"budget", terms},
           {"compared", compared},
-          {"warnings", budget.warnings},
+          {"warnings", warnings},
           {"verdict", budget.verdict},
           {"decides", emfield::decisionText(budget)},
           {"profile",

@@ -33,6 +33,8 @@ struct ProfileRequest {
   scenario::SitePosition to;
   double time_s = 0;
   std::vector<propagation::PropagationModel> models;
+  std::string option = "--to",
+              agl_option = "--agl";  ///< of the point and of heights above ground, in messages
 };
 
 /// Explains the path from an emitter to a point. @param file  of the scenario, for the report

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/scenario/model/quantities.h"
 #include "scenario/scan/scan_sweep.h"
 
 namespace emscape::report {
@@ -35,13 +36,23 @@ Nearest nearestTo(const FrameOrigin& position, bool is_exchanged, const scenario
   return nearest;
 }
 
-std::string likelyCause(const scenario::Scenario& scenario, const std::vector<double>& times_s) {
+/// @param is_of_jamming  the quantity has no value without jamming
+std::string likelyCause(const scenario::Scenario& scenario, const std::vector<double>& times_s,
+                        bool is_of_jamming) {
   const auto radiates = [&](const scenario::Emitter& emitter) {
     return emitter.enabled &&
            std::any_of(times_s.begin(), times_s.end(), [&](double t_s) { return isActiveAt(emitter, t_s); });
   };
   if (std::none_of(scenario.emitters.begin(), scenario.emitters.end(), radiates))
     return "no emitter transmits then (active_s, enabled)";
+  if (is_of_jamming) {
+    const bool has_jammer = std::any_of(
+        scenario.emitters.begin(), scenario.emitters.end(), [&](const scenario::Emitter& emitter) {
+          return emitter.kind == scenario::EmitterKind::jammer && radiates(emitter);
+        });
+    if (!has_jammer) return "no jammer transmits then (active_s, enabled)";
+    return "no radar is jammed: the jammers are outside their bands, or behind terrain or the horizon";
+  }
   const scenario::Region& region = scenario.region;
   const double half_m = std::hypot(region.size_m.x, region.size_m.y) / 2;
   const Nearest nearest = nearestTo(region.origin, false, scenario);
@@ -62,7 +73,9 @@ std::string noValueWarning(const std::string& quantity, const scenario::Scenario
                            const std::vector<double>& times_s) {
   return fmt::format("{}: no voxel is above the floor at {}: {}", quantity,
                      times_s.size() == 1 ? fmt::format("{:g} s", times_s.front()) : "any of the times",
-                     likelyCause(scenario, times_s));
+                     likelyCause(scenario, times_s,
+                                 quantity.substr(0, quantity.find(':')) ==
+                                     scenario::info(scenario::Quantity::jammer_to_signal_db).name));
 }
 
 }  // namespace emscape::report

@@ -15,13 +15,14 @@ Json rangesToJson(const playback::SeriesResult& result) {
 }  // namespace
 
 Json seriesJson(const std::string& device, const std::string& folder, const playback::SeriesResult& result,
-                double seconds) {
+                const std::vector<std::string>& warnings, double seconds) {
   return {{"device", device},
           {"folder", folder},
           {"steps", result.steps},
           {"steps_computed", result.steps_computed},
           {"channels", result.channels},
           {"ranges", rangesToJson(result)},
+          {"warnings", warnings},
           {"seconds", seconds}};
 }
 

@@ -2,14 +2,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "emscape/playback/series/series_writer.h"
 #include "report/json.h"
 
 namespace emscape::report {
 
-/// @param device  on which it was computed  @param seconds  that it took
+/// @param device  on which it was computed  @param warnings  joined  @param seconds  that it took
 Json seriesJson(const std::string& device, const std::string& folder, const playback::SeriesResult& result,
-                double seconds);
+                const std::vector<std::string>& warnings, double seconds);
 
 }  // namespace emscape::report

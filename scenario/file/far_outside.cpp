@@ -45,4 +45,34 @@ std::string farOutsideText(const Region& region, const std::vector<GeodeticPosit
               : "");
 }
 
+std::string mistakenPlaceText(const Region& region, double latitude_deg, double longitude_deg) {
+  const std::string text = farOutsideText(region, {{latitude_deg, longitude_deg, 0}});
+  return text.find("; perhaps ") == std::string::npos ? "" : text;
+}
+
+std::string outsideHeightsText(const Snapshot& snapshot, const Terrain* terrain) {
+  constexpr double kFar_m = 500;
+  const Region& region = snapshot.scenario->region;
+  const double lower_m = region.origin.height_msl_m, upper_m = lower_m + region.size_m.z;
+  const double lowest_m = terrain == nullptr ? 0 : terrain->lowest_m();
+  const std::string heights =
+      fmt::format("the region's heights, {:g} to {:g} m above mean sea level", lower_m, upper_m);
+  if (upper_m <= lowest_m)
+    return fmt::format("{}, are below all ground, of {:.0f} m and more: no voxel has a field", heights,
+                       lowest_m);
+  double nearest_m = HUGE_VAL;
+  std::string name;
+  for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
+    const double height_m = snapshot.emitters[e].height_msl_m;
+    const double outside_m = std::max({lower_m - height_m, height_m - upper_m, 0.0});
+    if (!snapshot.emitters[e].active || outside_m >= nearest_m) continue;
+    nearest_m = outside_m;
+    name = fmt::format("'{}' at {:.0f} m", snapshot.scenario->emitters[e].name, height_m);
+  }
+  if (name.empty() || nearest_m < kFar_m) return "";
+  return fmt::format(
+      "{}, have no emitter: the nearest is {}. 'origin.height_msl_m' is the lower face of the region",
+      heights, name);
+}
+
 }  // namespace emscape::scenario

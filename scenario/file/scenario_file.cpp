@@ -16,6 +16,7 @@
 #include "document/text_file.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/model/quantities.h"
+#include "scenario/file/file_kind.h"
 #include "scenario/file/parse_sections.h"
 #include "scenario/file/quantity_needs.h"
 #include "scenario/file/scenario_warnings.h"
@@ -392,7 +393,10 @@ ParseResult readSource(ScenarioSource source, const NamedFiles* before, ParseCon
   for (Problem& problem : result.problems) problem.location = source.text.originOf(problem.location);
   if (!scenario || context.problems.hasErrors()) return result;
   mapPlaces(*scenario, source.text);
+  for (const Problem& problem : result.problems)
+    source.warnings.push_back(toString(problem.location) + ": " + problem.message);
   source.files = std::move(context.files);
+  source.read_for = context.read_for;
   scenario->source = std::make_shared<const ScenarioSource>(std::move(source));
   result.scenario = std::move(scenario);
   return result;
@@ -433,7 +437,11 @@ ParseResult parsed(const std::string& file, const std::function<std::string()>& 
   try {
     source.text = {file, document::checkedUtf8(file, readBytes(), "a scenario")};
     source.root = document::readDocument(file, source.text.text(), context.problems);
+    const std::string other =
+        source.root ? otherDocumentText(documentKindOf(*source.root), DocumentKind::scenario) : "";
+    if (!other.empty()) throw Error(ErrorCode::bad_input, {file, 0, 0}, other);
   } catch (const Error& error) {
+    source.root = nullptr;
     context.problems.addError(error.location(), error.message());
   }
   if (source.root) applyEdits(source, edits, context);
@@ -444,7 +452,13 @@ ParseResult parsed(const std::string& file, const std::function<std::string()>& 
 
 ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits, ReadFor read_for) {
   return parsed(
-      file, [&] { return readWholeText(file, kMaxScenarioBytes); }, edits, read_for);
+      file,
+      [&] {
+        if (const std::string other = foreignFileText(file); !other.empty())
+          throw Error(ErrorCode::bad_input, {file, 0, 0}, other);
+        return readWholeText(file, kMaxScenarioBytes);
+      },
+      edits, read_for);
 }
 
 ParseResult parseScenarioText(const std::string& file, const std::string& text,
@@ -463,7 +477,11 @@ ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edit
   }
   ParseContext context;
   context.file = scenario.file;
-  ScenarioSource source{scenario.source->text, scenario.source->root, scenario.source->edits, {}};
+  context.read_for = scenario.source->read_for;
+  ScenarioSource source;
+  source.text = scenario.source->text;
+  source.root = scenario.source->root;
+  source.edits = scenario.source->edits;
   applyEdits(source, edits, context);
   return readSource(std::move(source), &scenario.source->files, context);
 }
@@ -474,6 +492,7 @@ std::shared_ptr<const Scenario> withEdits(const Scenario& scenario, const std::v
   }
   ParseContext context;
   context.file = scenario.file;
+  context.read_for = scenario.source->read_for;
   ScenarioSource source;
   source.text = {scenario.file, scenario.source->text.original()};
   source.root = document::readDocument(scenario.file, source.text.text(), context.problems);

@@ -133,9 +133,35 @@ void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& co
   of_low.addTo(context.problems);
 }
 
+constexpr double kNarrow_hz = 100;  ///< no receiver of a radar is, no noise of a jammer
+
+/// Warns about jammers of a few hertz, as 30 for 30e6 Hz, and about those without a bandwidth.
+void warnOfNarrowJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems of_narrow, of_none;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Emitter& jammer = scenario.emitters[i];
+    if (jammer.kind != EmitterKind::jammer || jammer.bandwidth_hz >= kNarrow_hz) continue;
+    if (!sections[i].has("bandwidth_hz")) {
+      of_none.add(
+          sections[i].location(), jammer.name,
+          fmt::format("jammer '{}' has no 'bandwidth_hz': it is narrower than any receiver, all its power "
+                      "falls into the radars' bands",
+                      jammer.name));
+    } else if (jammer.bandwidth_hz > 0) {
+      of_narrow.add(
+          sections[i].locationOf("bandwidth_hz"), jammer.name,
+          fmt::format("the signal of jammer '{}' is {:g} Hz wide, narrower than any noise: all its power "
+                      "falls into the radars' bands; 'bandwidth_hz' is in hertz",
+                      jammer.name, jammer.bandwidth_hz));
+    }
+  }
+  of_narrow.addTo(context.problems);
+  of_none.addTo(context.problems);
+}
+
 /// Warns about receivers of radars of a few hertz, as 1.0 for 1.0e6 Hz.
 void warnOfNarrowReceivers(const Scenario& scenario, const Section& root, ParseContext& context) {
-  constexpr double kNarrow_hz = 100;
   const std::vector<Section> sections = root.sections("emitters");
   WarningOfItems warning;
   for (std::size_t i = 0; i < sections.size(); ++i) {
@@ -371,6 +397,7 @@ void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseCon
   warnOfIdleJammers(scenario, root, context);
   warnOfGains(scenario, root, context);
   warnOfNarrowReceivers(scenario, root, context);
+  warnOfNarrowJammers(scenario, root, context);
   if (context.read_for == ReadFor::series) warnOfLongStep(scenario, root, context);
   warnOfTargetsTakenAsSteady(scenario, root, context);
   warnOfPlatformsFarOutside(scenario, root, context);

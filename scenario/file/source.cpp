@@ -221,4 +221,22 @@ bool operator==(const Edit& a, const Edit& b) {
   return a.path == b.path && a.value == b.value;
 }
 
+const std::vector<std::string>& warningsOf(const Scenario& scenario) {
+  static const std::vector<std::string> kNone;
+  return scenario.source ? scenario.source->warnings : kNone;
+}
+
+std::string titleOf(const Scenario& scenario) {
+  const std::size_t count = scenario.edits().size();
+  return scenario.name +
+         (count == 0 ? "" : fmt::format(" ({} value{} changed)", count, count == 1 ? "" : "s"));
+}
+
+std::string changesOf(const Scenario& scenario) {
+  std::string text;
+  for (const Edit& edit : scenario.edits())
+    text += (text.empty() ? "changed: " : "\nchanged: ") + toString(edit);
+  return text;
+}
+
 }  // namespace emscape::scenario

@@ -9,6 +9,7 @@
 #include "document/document.h"
 #include "document/edited_text.h"
 #include "emscape/scenario/antenna/antenna.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/edit.h"
 #include "emscape/scenario/model/platform.h"
 #include "emscape/scenario/model/target.h"
@@ -53,6 +54,8 @@ struct ScenarioSource {
   document::DocumentNodePtr root;  ///< null if the text could not be read
   std::vector<MadeEdit> edits;     ///< since the file was read, without superseded ones
   NamedFiles files;
+  ReadFor read_for = ReadFor::series;
+  std::vector<std::string> warnings;  ///< of the check, each with its place
 };
 
 /// True if an edit added what is at a path.

@@ -7,14 +7,13 @@
 
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
+#include "scenario/model/ground_tolerance.h"
 #include "scenario/model/posed_platform.h"
 #include "scenario/scan/scan_sweep.h"
 
 namespace emscape::scenario {
 
 namespace {
-
-constexpr double kGroundTolerance_m = 1e-3;
 
 std::string whereAndWhen(const Platform& platform, const SitePosition& at, double t_s) {
   return fmt::format("platform '{}' at t = {} s ({:.6f}, {:.6f} deg)", platform.name, t_s, at.latitude_deg,

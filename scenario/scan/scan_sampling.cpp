@@ -130,4 +130,17 @@ std::optional<UnlitAzimuths> unlitAzimuths(const Scenario& scenario, const Clock
   return unlit;
 }
 
+std::string mergedLooksText(const std::string& radar, const ScanSpec& scan,
+                            const std::vector<double>& times_s) {
+  const std::optional<double> period_s = scanPeriod_s(scan);
+  double step_s = 0;
+  for (std::size_t t = 1; t < times_s.size(); ++t) step_s = std::max(step_s, times_s[t] - times_s[t - 1]);
+  constexpr double kRounding = 1e-6;
+  if (!period_s || step_s <= *period_s * (1 + kRounding)) return "";
+  return fmt::format(
+      "emitter '{}': up to {:.0f} looks, one every {:g} s, fall between two of the times and count with the "
+      "probability at the later one: steps of {:g} s or less take each look by itself",
+      radar, std::ceil(step_s / *period_s - kRounding), *period_s, std::floor(*period_s * 1000) / 1000);
+}
+
 }  // namespace emscape::scenario

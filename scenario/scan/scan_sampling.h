@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/scenario.h"
@@ -31,5 +32,11 @@ struct UnlitAzimuths {
 
 /// @return none if the output does not show scans at a time, or if beams illuminate all azimuths
 std::optional<UnlitAzimuths> unlitAzimuths(const Scenario& scenario, const Clock& clock);
+
+/// Says that several looks of a radar fall between two times, which all count with the probability at the
+/// later one, and the step that separates them; empty for a scan without a period and for at most one.
+/// @param times_s  ascending
+std::string mergedLooksText(const std::string& radar, const ScanSpec& scan,
+                            const std::vector<double>& times_s);
 
 }  // namespace emscape::scenario

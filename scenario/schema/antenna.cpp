@@ -75,7 +75,12 @@ const ObjectSpec& antennaSpec() {
           required("file", kFile, "relative to the scenario's folder", {"file"}),
           required("azimuth_file", kFile, "CSV: azimuth_deg, attenuation_db; or .az of SPLAT!", {"cuts"}),
           required("elevation_file", kFile, "CSV: elevation_deg, attenuation_db; or .el of SPLAT!", {"cuts"}),
-      }};
+      },
+      {},
+      {},
+      {{"elevation_deg", "the elevation of the beam is 'elevation_deg' of the emitter's 'scan'"},
+       {"tilt_deg", "the elevation of the beam is 'elevation_deg' of the emitter's 'scan'"},
+       {"azimuth_deg", "the direction of the beam is 'azimuth_deg' of the emitter's 'scan'"}}};
   return spec;
 }
 

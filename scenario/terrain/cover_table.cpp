@@ -18,7 +18,7 @@ namespace {
 using document::CsvCell;
 using document::CsvRow;
 
-constexpr std::size_t kMaxTableBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxCoverTableBytes = std::size_t{1} << 20;
 constexpr std::size_t kMaxClasses = 250;
 constexpr double kMaxClutter_m = 100;
 constexpr const char* kColumns[] = {"code", "name", "clutter_height_m", "zone", "land", "color"};
@@ -112,7 +112,7 @@ class TableReader {
 
 std::vector<CoverClass> readCoverTable(const std::string& file) {
   const std::string text =
-      document::checkedUtf8(file, readWholeText(file, kMaxTableBytes), "a table of classes");
+      document::checkedUtf8(file, readWholeText(file, kMaxCoverTableBytes), "a table of classes");
   return TableReader(file, text).read();
 }
 

@@ -313,6 +313,9 @@ void TerrainFile::Impl::requireClasses(GDALRasterBandH band_of_codes) const {
 
 void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
   GdalMessages messages;
+  if (const char* const product = GDALGetMetadataItem(dataset, "EMSCAPE_PRODUCT", nullptr);
+      product != nullptr)
+    fail(std::string("is a map of emscape ('") + product + "'), whose values are no heights");
   double transform[6];
   OGRSpatialReferenceH given = GDALGetSpatialRef(dataset);
   bool is_tile_of_web = false;

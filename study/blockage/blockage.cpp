@@ -9,6 +9,7 @@
 #include "emfield/columns/station.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/study/maps/area.h"
 #include "study/picture/map_picture.h"
@@ -107,6 +108,7 @@ Blockage computeBlockage(const std::shared_ptr<const scenario::Scenario>& scenar
   Blockage blockage;
   blockage.request = request;
   blockage.scenario = scenario->name;
+  blockage.title = titleOf(*scenario);
   blockage.emitter = emitter.name;
   blockage.position = state.position;
   const emfield::Station station =
@@ -130,7 +132,8 @@ Blockage computeBlockage(const std::shared_ptr<const scenario::Scenario>& scenar
   if (std::isnan(terrain->lowest_m()))
     throw Error(ErrorCode::bad_input, {scenario->file, 0, 0},
                 "no ground is known around the emitter; " + terrain->placeText());
-  blockage.warnings = terrain->warnings();
+  blockage.warnings = warningsOf(*scenario);
+  for (const std::string& warning : terrain->warnings()) blockage.warnings.push_back(warning);
   const std::size_t gates = static_cast<std::size_t>(request.azimuths) * blockage.ranges;
   for (std::vector<float>* values : {&blockage.edge_msl_m, &blockage.partial, &blockage.cumulative})
     values->resize(gates);
@@ -174,7 +177,7 @@ render::Image8 drawBlockage(const Blockage& blockage, int width) {
   const BlockageMap made = mapOf(blockage);
   MapPictureOptions options;
   options.width = width;
-  options.title = fmt::format("{}: beam blockage of '{}'", blockage.scenario, blockage.emitter);
+  options.title = fmt::format("{}: beam blockage of '{}'", blockage.title, blockage.emitter);
   options.subtitle = made.map.description;
   options.markers = {{blockage.position.latitude_deg, blockage.position.longitude_deg, blockage.emitter,
                       render::MarkerKind::radar, render::Affiliation::none, ""}};

@@ -41,6 +41,7 @@ double partOfBeamBelow(double edge_m, double radius_m);
 struct Blockage {
   BlockageRequest request;
   std::string scenario, emitter;
+  std::string title;  ///< name of the scenario with the number of edits
   GeodeticPosition position;
   double station_msl_m = 0, effective_earth_radius_m = 0;
   double elevation_deg = 0, beamwidth_deg = 0;

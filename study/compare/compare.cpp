@@ -8,11 +8,8 @@
 #include "study/compare/map_comparer.h"
 
 namespace emscape::study {
-namespace {
-
-/// Warnings of both scenarios are said once.
-std::vector<std::string> warningsOf(const std::vector<std::string>& of_a,
-                                    const std::vector<std::string>& of_b) {
+std::vector<std::string> warningsOfBoth(const std::vector<std::string>& of_a,
+                                        const std::vector<std::string>& of_b) {
   const auto has = [](const std::vector<std::string>& all, const std::string& warning) {
     return std::find(all.begin(), all.end(), warning) != all.end();
   };
@@ -23,8 +20,6 @@ std::vector<std::string> warningsOf(const std::vector<std::string>& of_a,
     if (!has(of_a, warning)) warnings.push_back("B: " + warning);
   return warnings;
 }
-
-}  // namespace
 
 void checkRequest(const CompareRequest& request, const scenario::Scenario& a, const scenario::Scenario& b) {
   requireDifferences(request.coverage.products);
@@ -61,7 +56,7 @@ Comparison computeComparison(const ComparedScenario& a, const ComparedScenario& 
   Comparison comparison = comparer.finish();
   comparison.has_paths = true;
   for (ChangedArea& area : comparison.changed_areas) explain(area, request.coverage.quantity, a, b);
-  comparison.warnings = warningsOf(warnings_a, warnings_b);
+  comparison.warnings = warningsOfBoth(warnings_a, warnings_b);
   return comparison;
 }
 

@@ -64,6 +64,10 @@ struct Comparison {
   std::vector<std::string> warnings;
 };
 
+/// Warnings of A and B: those of both once.
+std::vector<std::string> warningsOfBoth(const std::vector<std::string>& of_a,
+                                        const std::vector<std::string>& of_b);
+
 struct CompareRequest {
   CoverageRequest coverage;  ///< Product::best, an index, has no difference
   int areas = 3;             ///< of changed areas that are explained, for gained and lost each

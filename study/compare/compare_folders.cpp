@@ -5,6 +5,7 @@
 #include <set>
 
 #include "emscape/base/error.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "study/compare/changed_areas.h"
 #include "study/compare/compare.h"
 #include "study/compare/map_comparer.h"
@@ -169,6 +170,10 @@ Comparison compareFolders(const CoverageFolder& a, const CoverageFolder& b,
   for (ChangedArea& area : comparison.changed_areas) {
     if (comparison.has_paths) explain(area, a.quantity, {a.scenario, a.terrain}, {b.scenario, b.terrain});
   }
+  const auto checkOf = [](const CoverageFolder& folder) {
+    return folder.has_inputs ? warningsOf(*folder.scenario) : std::vector<std::string>{};
+  };
+  comparison.warnings = warningsOfBoth(checkOf(a), checkOf(b));
   for (const CoverageFolder* folder : {&a, &b}) {
     if (folder->has_inputs) continue;
     comparison.warnings.push_back(fmt::format(

@@ -9,9 +9,11 @@
 #include "emfield/excess/clutter_text.h"
 #include "emfield/link/target_view.h"
 #include "emscape/base/error.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/scenario/model/waveform.h"
 #include "emscape/volume/dense_volume.h"
+#include "scenario/scan/scan_sampling.h"
 #include "study/maps/warnings.h"
 
 namespace emscape::study {
@@ -198,6 +200,10 @@ void accumulate(const scenario::Scenario& scenario, Exposure& exposure) {
   const bool has_looks = exposure.request.quantity == Quantity::detection_probability &&
                          exposure.request.look == scenario::RadarAim::target;
   std::vector<double> missed(exposure.emitters.size(), 1.0);
+  const auto passes = [&](ExposureSummary& summary, double never, double time_s) {
+    if (has_looks && !summary.cumulative_first_s && 1 - never >= exposure.request.threshold)
+      summary.cumulative_first_s = time_s;
+  };
   for (std::size_t t = 0; t < exposure.rows.size(); ++t) {
     ExposureRow& row = exposure.rows[t];
     double all = 1;
@@ -213,8 +219,10 @@ void accumulate(const scenario::Scenario& scenario, Exposure& exposure) {
       const double probability = row.each[n] > 0 ? row.each[n] : 0;
       missed[n] *= std::pow(1 - probability, static_cast<double>(looks));
       all *= missed[n];
+      passes(exposure.each[n], missed[n], row.time_s);
     }
     row.cumulative_probability = has_looks ? 1 - all : NAN;
+    passes(exposure.together, all, row.time_s);
   }
   for (std::size_t n = 0; n < missed.size(); ++n) {
     exposure.each[n].cumulative_probability = has_looks ? 1 - missed[n] : NAN;
@@ -294,6 +302,7 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
   Exposure exposure;
   exposure.request = request;
   exposure.scenario = scenario->name;
+  exposure.title = titleOf(*scenario);
   exposure.platform = scenario->platforms[request.platform].name;
   exposure.unit = scenario::info(request.quantity).unit;
   exposure.clutter = emfield::clutterText(*scenario);
@@ -310,7 +319,8 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
     track.addRows(begin, end, exposure.rows, progress);
   }
   if (progress) progress("track", 1);
-  exposure.warnings.assign(track.warnings.begin(), track.warnings.end());
+  exposure.warnings = warningsOf(*scenario);
+  exposure.warnings.insert(exposure.warnings.end(), track.warnings.begin(), track.warnings.end());
   for (const std::string& warning :
        {scenario::outsideClockText(request.times_s, scenario->clock),
         scenario::absenceText(scenario->platforms[request.platform], request.times_s)}) {
@@ -330,6 +340,13 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
     exposure.warnings.push_back(fmt::format(
         "all {} are on platform '{}' itself, whose own emitters are left out: the value is that of none",
         scenario::needsRadar(request.quantity) ? "radars" : "emitters", exposure.platform));
+  }
+  const bool has_looks =
+      request.quantity == Quantity::detection_probability && request.look == scenario::RadarAim::target;
+  for (std::size_t n = 0; n < exposure.emitters.size() && has_looks; ++n) {
+    const scenario::Emitter& radar = scenario->emitters[static_cast<std::size_t>(exposure.emitters[n])];
+    if (std::string text = scenario::mergedLooksText(radar.name, radar.scan, request.times_s); !text.empty())
+      exposure.warnings.push_back(std::move(text));
   }
   if (const std::optional<std::string> warning = scanWarning(*scenario, exposure)) {
     exposure.warnings.push_back(*warning);

@@ -100,7 +100,7 @@ void plotExposure(const Exposure& exposure, render::ImageSize size, const std::s
         render::quantityTitle(scenario::info(exposure.request.quantity).name, exposure.unit);
     const std::string in_unit = exposure.unit.empty() ? "" : " (" + render::unitText(exposure.unit) + ")";
     const std::string title =
-        fmt::format("{}: {} along the track of {}", exposure.scenario, quantity, exposure.platform);
+        fmt::format("{}: {} along the track of {}", exposure.title, quantity, exposure.platform);
     canvas.text(title, {92 * unit, 26 * unit},
                 render::fittedSize_px(canvas, title, 20 * unit, width - 112 * unit, render::Weight::bold),
                 render::kPlotText, Align::left, render::Weight::bold);

@@ -87,6 +87,7 @@ class GeoJson : public MapCollection {
                                {"name", emitter.emitter->name},
                                {"kind", scenario::toString(emitter.emitter->kind)},
                                {"platform", emitter.platform},
+                               {"enabled", emitter.emitter->enabled},
                                {"frequency_hz", emitter.emitter->frequency_hz},
                                {"power_w", emitter.emitter->power_w},
                                {"height_msl_m", at.height_msl_m}};

@@ -234,6 +234,7 @@ class GeoPackage : public MapCollection {
                                {{"name", OFTString},
                                 {"kind", OFTString},
                                 {"platform", OFTString},
+                                {"enabled", OFTInteger},
                                 {"frequency_hz", OFTReal},
                                 {"power_w", OFTReal},
                                 {"height_msl_m", OFTReal},
@@ -246,10 +247,11 @@ class GeoPackage : public MapCollection {
         feature.set("name", emitter.emitter->name);
         feature.set("kind", scenario::toString(emitter.emitter->kind));
         feature.set("platform", emitter.platform);
+        feature.setFlag("enabled", emitter.emitter->enabled);
         feature.set("frequency_hz", emitter.emitter->frequency_hz);
         feature.set("power_w", emitter.emitter->power_w);
         feature.set("height_msl_m", at.height_msl_m);
-        feature.set("color", hexOf(render::colorOf(playback::markerKindOf(emitter.emitter->kind))));
+        feature.set("color", hexOf(pointColorOf(*emitter.emitter)));
         if (emitter.is_moving && study_.times_s.size() > 1) setTimes(feature, at.time_s);
         feature.setGeometry(pointAt(at.position));
         check(scope, feature.write());

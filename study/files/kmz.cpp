@@ -219,17 +219,18 @@ class Kmz : public MapCollection {
   std::string emitters() const {
     std::string text = "<Folder><name>emitters</name>\n";
     for (const MapEmitter& emitter : emittersOf(study_)) {
-      const render::Rgb color = render::colorOf(playback::markerKindOf(emitter.emitter->kind));
+      const render::Rgb color = pointColorOf(*emitter.emitter);
       for (const MapPosition& at : emitter.positions) {
         const bool is_of_a_time = emitter.is_moving && study_.times_s.size() > 1;
         const std::string span = is_of_a_time ? spanOf(at.time_s, endOf(study_, at.time_s)) : "";
         text += fmt::format(
-            "<Placemark><name>{}</name><description>{}, {:.6g} MHz, {:.6g} W</description>{}<Style>"
+            "<Placemark><name>{}</name><description>{}, {:.6g} MHz, {:.6g} W{}</description>{}<Style>"
             "<IconStyle><color>{}</color><scale>0.8</scale></IconStyle></Style><Point>"
             "<altitudeMode>absolute</altitudeMode><coordinates>{:.8f},{:.8f},{:.2f}</coordinates></Point>"
             "</Placemark>\n",
             escapedXml(emitter.emitter->name), scenario::toString(emitter.emitter->kind),
-            emitter.emitter->frequency_hz / 1e6, emitter.emitter->power_w, span, kmlColor(color),
+            emitter.emitter->frequency_hz / 1e6, emitter.emitter->power_w,
+            emitter.emitter->enabled ? "" : ", switched off", span, kmlColor(color),
             at.position.longitude_deg, at.position.latitude_deg, at.height_msl_m);
       }
     }

@@ -2,12 +2,26 @@
 
 #include <fmt/format.h>
 
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/clock.h"
 
 namespace emscape::study {
 
+std::string noValueText(const Map& map) {
+  return fmt::format("NaN: at most {} {}, below the ground, unknown or outside the area", *map.floor,
+                     map.unit);
+}
+
 std::vector<std::pair<std::string, std::string>> metadataOf(const MapStudy& study, const Map& map) {
-  return metadataOf(*study.scenarios.front(), study.quantity, study.threshold, map);
+  auto metadata = metadataOf(*study.scenarios.front(), study.quantity, study.threshold, map);
+  if (study.scenarios.size() > 1) {
+    const scenario::Scenario& b = *study.scenarios.back();
+    metadata.emplace_back("EMSCAPE_SCENARIO_B", b.name);
+    metadata.emplace_back("EMSCAPE_SCENARIO_B_HASH", b.hash);
+    if (const std::string changes = changesOf(b); !changes.empty())
+      metadata.emplace_back("EMSCAPE_SCENARIO_B_CHANGES", changes);
+  }
+  return metadata;
 }
 
 std::vector<std::pair<std::string, std::string>> metadataOf(const scenario::Scenario& scenario,
@@ -21,6 +35,12 @@ std::vector<std::pair<std::string, std::string>> metadataOf(const scenario::Scen
       {"EMSCAPE_THRESHOLD", fmt::format("{}", threshold)},
       {"EMSCAPE_HEIGHT_DATUM", "EGM96 (EPSG:5773)"},
       {"EMSCAPE_VERSION", EMSCAPE_VERSION}};
+  if (const std::string changes = changesOf(scenario); !changes.empty())
+    metadata.emplace_back("EMSCAPE_SCENARIO_CHANGES", changes);
+  if (map.floor) {
+    metadata.emplace_back("EMSCAPE_FLOOR", fmt::format("{}", *map.floor));
+    metadata.emplace_back("EMSCAPE_NO_VALUE", noValueText(map));
+  }
   if (map.height) metadata.emplace_back("EMSCAPE_HEIGHT", describe(*map.height));
   if (map.time_s) {
     metadata.emplace_back("EMSCAPE_TIME_S", fmt::format("{}", *map.time_s));

@@ -9,6 +9,9 @@
 
 namespace emscape::study {
 
+/// What pixels without a value are, of a map that has a floor.
+std::string noValueText(const Map& map);
+
 /// Items of every map's file, EMSCAPE_NAME and value.
 std::vector<std::pair<std::string, std::string>> metadataOf(const scenario::Scenario& scenario,
                                                             scenario::Quantity quantity, double threshold,

@@ -95,16 +95,53 @@ gdal::Geometry validPolygons(gdal::Geometry geometry) {
   return polygons;
 }
 
+/// The outlines of the pixels of each number other than `none`, as multipolygons.
+std::map<int, gdal::Geometry> outlinesOf(const MapGrid& grid, std::vector<std::int32_t> numbers, int none,
+                                         const std::filesystem::path& file) {
+  const gdal::Dataset raster = memoryRaster(grid, GDT_Int32, file);
+  GDALRasterBandH band = GDALGetRasterBand(raster.get(), 1);
+  Layer outlines(file);
+  const int field = outlines.addField("value", OFTInteger);
+  outlines.check(GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height, numbers.data(), grid.width,
+                              grid.height, GDT_Int32, 0, 0));
+  outlines.check(GDALPolygonize(band, nullptr, outlines.get(), field, nullptr, nullptr, nullptr));
+  std::map<int, gdal::Geometry> by_number;
+  outlines.rewind();
+  while (const gdal::Feature feature = outlines.next()) {
+    const int number = OGR_F_GetFieldAsInteger(feature.get(), field);
+    if (number == none) continue;
+    gdal::Geometry& all = by_number[number];
+    if (all == nullptr) all.reset(OGR_G_CreateGeometry(wkbMultiPolygon));
+    OGR_G_AddGeometryDirectly(all.get(), OGR_F_StealGeometry(feature.get()));
+  }
+  return by_number;
+}
+
+/// Adds the band of the pixels with a probability of 0.
+void addZeros(const MapGrid& grid, const Map& map, const std::filesystem::path& file, MapShapes& shapes) {
+  std::vector<std::int32_t> is_zero(map.values.size());
+  for (std::size_t p = 0; p < is_zero.size(); ++p) is_zero[p] = map.values[p] == 0 ? 1 : 0;
+  std::map<int, gdal::Geometry> zeros = outlinesOf(grid, std::move(is_zero), 0, file);
+  if (zeros.empty()) return;
+  MapBand band;
+  band.geometry = validPolygons(std::move(zeros.begin()->second));
+  shapes.bands.insert(shapes.bands.begin(), std::move(band));
+}
+
 void addContours(const MapGrid& grid, const Map& map, const std::filesystem::path& file, MapShapes& shapes) {
   const std::vector<double> levels = levelsOf(map);
   const bool by_log_odds = map.kind == MapKind::probability;
   const auto scaled = [&](double value) { return by_log_odds ? logOddsOf(value) : value; };
+  const bool has_zeros = by_log_odds && !levels.empty();
   const gdal::Dataset raster = memoryRaster(grid, GDT_Float64, file);
   GDALRasterBandH band = GDALGetRasterBand(raster.get(), 1);
   std::vector<double> values(map.values.size(), NAN);
   for (std::size_t p = 0; p < values.size(); ++p) {
-    if (!std::isnan(map.values[p])) values[p] = scaled(static_cast<double>(map.values[p]));
+    if (!std::isnan(map.values[p]) && !(has_zeros && map.values[p] == 0))
+      values[p] = scaled(static_cast<double>(map.values[p]));
   }
+  if (std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
+    return addZeros(grid, map, file, shapes);
   Layer lines(file), bands(file);
   lines.check(GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height, values.data(), grid.width,
                            grid.height, GDT_Float64, 0, 0));
@@ -157,32 +194,18 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
   }
   std::stable_sort(shapes.bands.begin(), shapes.bands.end(),
                    [](const MapBand& a, const MapBand& b) { return a.max < b.max; });
+  if (has_zeros) addZeros(grid, map, file, shapes);
 }
 
 void addOutlines(const MapGrid& grid, const Map& map, const std::filesystem::path& file, MapShapes& shapes) {
   constexpr int kNone = -1;
   const int nothing = map.kind == MapKind::classes ? 0 : -1;
-  const gdal::Dataset raster = memoryRaster(grid, GDT_Int32, file);
-  GDALRasterBandH band = GDALGetRasterBand(raster.get(), 1);
   std::vector<std::int32_t> numbers(map.values.size(), kNone);
   for (std::size_t p = 0; p < numbers.size(); ++p) {
     const float value = map.values[p];
     if (!std::isnan(value) && static_cast<int>(value) != nothing) numbers[p] = static_cast<int>(value);
   }
-  Layer outlines(file);
-  const int field = outlines.addField("value", OFTInteger);
-  outlines.check(GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height, numbers.data(), grid.width,
-                              grid.height, GDT_Int32, 0, 0));
-  outlines.check(GDALPolygonize(band, nullptr, outlines.get(), field, nullptr, nullptr, nullptr));
-  std::map<int, gdal::Geometry> by_number;
-  outlines.rewind();
-  while (const gdal::Feature feature = outlines.next()) {
-    const int number = OGR_F_GetFieldAsInteger(feature.get(), field);
-    if (number == kNone) continue;
-    gdal::Geometry& all = by_number[number];
-    if (all == nullptr) all.reset(OGR_G_CreateGeometry(wkbMultiPolygon));
-    OGR_G_AddGeometryDirectly(all.get(), OGR_F_StealGeometry(feature.get()));
-  }
+  std::map<int, gdal::Geometry> by_number = outlinesOf(grid, std::move(numbers), kNone, file);
   const render::Legend legend = legendOf(map);
   for (auto& [number, outline] : by_number) {
     MapBand one;

@@ -34,9 +34,10 @@ struct MapShapes {
 };
 
 /// Contours are interpolated linearly between the centres of pixels; probabilities by their log-odds (clamped
-/// to 1e-6 .. 1 - 1e-6). Bands between levels tile the pixels that have a value. Whole numbers have no
-/// contours; their bands have the outlines of the pixels, one for each number except the one for no value.
-/// Coordinates are those of the grid's projection.
+/// to 1e-6 .. 1 - 1e-6). Beside pixels without a value, and beside those with a probability of 0, where there
+/// is no echo, bands have the outlines of the pixels. Bands between levels tile the pixels that have a value.
+/// Whole numbers have no contours; their bands have the outlines of the pixels, one for each number except
+/// the one for no value. Coordinates are those of the grid's projection.
 /// @throws Error (other) naming the destination file
 MapShapes shapesOf(const MapGrid& grid, const Map& map, const std::filesystem::path& file);
 

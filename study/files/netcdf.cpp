@@ -227,6 +227,10 @@ class NetCdf : public MapCollection {
     check(messages, variable != nullptr);
     setText(variable, "long_name", map.subject + (map.unit.empty() ? "" : " (" + map.unit + ")"));
     setText(variable, "coordinates", "lat lon");
+    if (map.floor) {
+      setText(variable, "floor", fmt::format("{}", *map.floor));
+      setText(variable, "no_value", noValueText(map));
+    }
     if (is_whole) {
       GDALMDArraySetRawNoDataValue(variable.get(), &kNoNumber);
       addFlags(variable, map);

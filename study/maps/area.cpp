@@ -11,6 +11,7 @@
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
 #include "emscape/study/maps/map_grid.h"
+#include "scenario/file/far_outside.h"
 
 namespace emscape::study {
 
@@ -120,6 +121,13 @@ void requireGround(const scenario::Scenario& scenario, const scenario::Terrain& 
           "deg; {}",
           missing, pixels, first.latitude_deg, first.longitude_deg,
           is_all ? terrain.placeText() : scenario::kMissingTerrainRemedy));
+}
+
+std::string mistakenAreaText(const MapArea& area, const scenario::Region& region) {
+  const double latitude_deg = 0.5 * (area.box.south_deg + area.box.north_deg);
+  const double longitude_deg = wrapLongitude_deg(0.5 * (area.box.west_deg + area.box.east_deg));
+  const std::string text = scenario::mistakenPlaceText(region, latitude_deg, longitude_deg);
+  return text.empty() ? "" : "of its middle, " + text;
 }
 
 MapArea parseArea(const std::string& text) {

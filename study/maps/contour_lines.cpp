@@ -40,7 +40,8 @@ std::vector<Side> take(Joints& joints, Side begin) {
 
 }  // namespace
 
-std::vector<GridLine> contourLines(const std::vector<float>& values, int width, int height, float level) {
+std::vector<GridLine> contourLines(const std::vector<float>& values, int width, int height, float level,
+                                   float floor) {
   Joints joints;
   for (int j = 0; j + 1 < height; ++j) {
     for (int i = 0; i + 1 < width; ++i) {
@@ -63,7 +64,8 @@ std::vector<GridLine> contourLines(const std::vector<float>& values, int width, 
   }
   const auto place = [&](Side side) {
     const Side n = side / 2, next = side % 2 == 0 ? n + 1 : n + width;
-    const double part = static_cast<double>((level - values[n]) / (values[next] - values[n]));
+    const bool is_edge = values[n] <= floor || values[next] <= floor;
+    const double part = is_edge ? 0.5 : static_cast<double>((level - values[n]) / (values[next] - values[n]));
     const auto x = static_cast<double>(n % width), y = static_cast<double>(n / width);
     return side % 2 == 0 ? GridPoint{x + part, y} : GridPoint{x, y + part};
   };

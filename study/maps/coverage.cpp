@@ -8,6 +8,7 @@
 #include <set>
 
 #include "emscape/base/error.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "scenario/scan/scan_sampling.h"
 #include "study/maps/causes.h"
@@ -343,6 +344,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
   }
   std::vector<std::vector<std::string>> warnings(scenarios.size());
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
+    warnings[s] = warningsOf(*scenarios[s]);
     const auto inactive = inactiveWarning(at_targets[s], terrain, requests.front().quantity, times_s);
     const std::string outside = scenario::outsideClockText(times_s, at_targets[s]->clock);
     if (!outside.empty()) warnings[s].push_back(outside);

@@ -7,9 +7,11 @@
 
 #include "base/text/quantity_text.h"
 #include "emfield/channels/categories.h"
+#include "emfield/channels/products.h"
 #include "emscape/base/parallel.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "study/maps/causes.h"
+#include "emscape/volume/dense_volume.h"
 
 namespace emscape::study {
 namespace {
@@ -27,6 +29,22 @@ MapKind kindOf(const ProductInfo& product, Quantity quantity, const std::string&
   if (!unit.empty()) return MapKind::level;
   const bool is_probability = is_value && quantity == Quantity::detection_probability;
   return is_probability ? MapKind::probability : MapKind::fraction;
+}
+
+/// The value that a field holds where it has none; none: its smallest value is an answer.
+std::optional<double> floorOf(const scenario::Scenario& scenario, Quantity quantity) {
+  if (quantity == Quantity::detection_age_s) return -1;
+  const bool in_decibels = std::string(scenario::info(quantity).unit).rfind("dB", 0) == 0;
+  return in_decibels ? std::optional(scenario.output.floor) : std::nullopt;
+}
+
+/// Map::ratio_side of a quantity.
+int ratioSideOf(Quantity quantity) {
+  const char* const scale = emfield::scaleOf(quantity);
+  if (scale == nullptr) return 0;
+  return scale == std::string(volume::kRatioAboveScale)   ? 1
+         : scale == std::string(volume::kRatioBelowScale) ? -1
+                                                          : 0;
 }
 
 /// Colours of a product's classes: indices of render::categoryColor().
@@ -102,6 +120,12 @@ CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& 
   if (map.kind == MapKind::category) {
     const Quantity named = product == Product::best ? Quantity::dominant_emitter : request.quantity;
     map.labels = emfield::categoryNames(scenario, named);
+  }
+  if (product == Product::value || product == Product::margin)
+    map.floor = floorOf(scenario, request.quantity);
+  if (product == Product::value) {
+    map.note = emfield::legendNoteOf(request.quantity, scenario);
+    map.ratio_side = ratioSideOf(request.quantity);
   }
   map.subject = product == Product::value ? map.title
                                           : fmt::format("{} ({} >= {})", map.title, titleOf(request.quantity),
@@ -218,7 +242,7 @@ void SurfaceMaps::addTime(std::size_t index, const std::shared_ptr<const scenari
           product == Product::cause
               ? causesOf(grid_, request_, scenario, values.terrain.get(), layers_[n].height, time_s,
                          of_product, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); })
-              : valuesOf(product, values, k, of_product);
+              : valuesOf(product, values, k, of_product, map.floor);
       setAnswers(map, std::move(of_product), shown);
       setValues(map, grid_, std::move(shown));
       take(std::move(map));
@@ -261,7 +285,8 @@ PixelAnswer SurfaceMaps::answerAt(const SurfaceValues& values, const Layer& laye
 }
 
 std::vector<float> SurfaceMaps::valuesOf(Product product, const SurfaceValues& values, std::size_t k,
-                                         const std::vector<PixelAnswer>& answers) const {
+                                         const std::vector<PixelAnswer>& answers,
+                                         std::optional<float> floor) const {
   /// @param ofKnown(value, p)  of a pixel with a value
   const auto from = [&](const auto& ofKnown) {
     return valuesOfPixels(grid_, [&](std::size_t p) {
@@ -269,12 +294,15 @@ std::vector<float> SurfaceMaps::valuesOf(Product product, const SurfaceValues& v
       return has_value ? ofKnown(valueAt(*values.all, k, p), p) : NAN;
     });
   };
+  const auto aboveFloor = [floor](float value) { return floor && !(value > *floor) ? NAN : value; };
   const auto isCoveredUnjammed = [&](std::size_t p) { return isCovered(valueAt(*values.unjammed, k, p)); };
   switch (product) {
     case Product::covered:
       return from([&](float value, std::size_t) { return isCovered(value) ? 1.0f : 0.0f; });
     case Product::margin:
-      return from([&](float value, std::size_t) { return value - static_cast<float>(request_.threshold); });
+      return from([&](float value, std::size_t) {
+        return aboveFloor(value) - static_cast<float>(request_.threshold);
+      });
     case Product::jam_loss:
       return from([&](float value, std::size_t p) {
         return !isCovered(value) && isCoveredUnjammed(p) ? 1.0f : 0.0f;
@@ -289,7 +317,7 @@ std::vector<float> SurfaceMaps::valuesOf(Product product, const SurfaceValues& v
     case Product::max_range:
       return from([&](float, std::size_t p) { return ofEmitters(product, values.each, k, p); });
     default:
-      return from([](float value, std::size_t) { return value; });
+      return from([&](float value, std::size_t) { return aboveFloor(value); });
   }
 }
 

@@ -109,7 +109,7 @@ class SurfaceMaps {
   /// What the value of all emitters says. That of some of them is an answer if it reaches the threshold.
   PixelAnswer answerAt(const SurfaceValues& values, const Layer& layer, std::size_t p) const;
   std::vector<float> valuesOf(Product product, const SurfaceValues& values, std::size_t k,
-                              const std::vector<PixelAnswer>& answers) const;
+                              const std::vector<PixelAnswer>& answers, std::optional<float> floor) const;
   float ofEmitters(Product product, const std::vector<SurfaceValues::OfOne>& each, std::size_t k,
                    std::size_t p) const;
 

@@ -22,6 +22,15 @@ void setColors(render::Legend& legend, const char* colors, double low, double hi
   legend.function.opacities = {{low, 0}, {high, 0}};
 }
 
+/// The diverging colours of decibels about 0, as of a volume of them. @param side  Map::ratio_side
+void setRatioColors(render::Legend& legend, int side) {
+  constexpr double kSpan_db = 30;
+  setColors(legend, "diverging", -kSpan_db, kSpan_db);
+  if (side > 0) return;
+  for (auto& point : legend.function.colors) point.at = -point.at;
+  std::reverse(legend.function.colors.begin(), legend.function.colors.end());
+}
+
 /// Index of a colour of render::categoryColor().
 int categoryOf(const Map& map, int value) {
   return value >= 0 && value < static_cast<int>(map.colors.size()) ? map.colors[value] : value;
@@ -85,6 +94,10 @@ render::Legend colorsOf(const Map& map) {
     if (present.count(transparentOf(map.kind)) != 0) legend.note = "no colour: " + nameOfTransparent(map);
     return legend;
   }
+  if (map.ratio_side != 0) {
+    setRatioColors(legend, map.ratio_side);
+    return legend;
+  }
   if (!(least <= largest)) least = largest = 0;
   double low = static_cast<double>(least), high = static_cast<double>(largest);
   if (isFraction(map.kind)) {
@@ -105,6 +118,9 @@ render::Legend colorsOf(const Map& map) {
 
 render::Legend legendOf(const Map& map, Units units, FieldUnit field_unit) {
   render::Legend legend = colorsOf(map);
+  legend.map_note = map.note;
+  if (map.floor)
+    legend.note = render::displayText(fmt::format("no colour: none, or <= {:g} {}", *map.floor, map.unit));
   render::setFieldUnit(legend, map.unit, field_unit);
   if (map.unit == "m" && units == Units::nautical) {
     const bool is_distance = map.name.rfind(info(Product::max_range).name, 0) == 0;

@@ -5,10 +5,16 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/playback/frames/scene.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "render/annotate/overlay_parts.h"
 
 namespace emscape::study {
-namespace {}  // namespace
+
+render::Rgb pointColorOf(const scenario::Emitter& emitter) {
+  constexpr render::Rgb kOff{0.6F, 0.6F, 0.6F};
+  return emitter.enabled ? render::colorOf(playback::markerKindOf(emitter.kind)) : kOff;
+}
 
 std::vector<MapEmitter> emittersOf(const MapStudy& study) {
   const auto& scenario = study.scenarios.front();

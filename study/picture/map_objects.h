@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "emscape/render/transfer/transfer_function.h"
 #include "study/maps/map_study.h"
 
 namespace emscape::study {
@@ -37,6 +38,9 @@ struct MapTrack {
   const scenario::Platform* platform = nullptr;
   std::vector<MapPosition> positions;  ///< two or more, in the order of time
 };
+
+/// The colour of an emitter's point: that of its kind; grey if it is switched off.
+render::Rgb pointColorOf(const scenario::Emitter& emitter);
 
 /// All emitters of the study's first scenario, active or not.
 std::vector<MapEmitter> emittersOf(const MapStudy& study);

@@ -47,7 +47,9 @@ class MapPicture {
         sea_(options.water.empty()
                  ? scenario::seaByHeights(relief_.width, relief_.height, relief_.ground_msl_m)
                  : options.water) {
-    if (hasNoValue())
+    if (map.floor) {
+      if (!hasNoValue()) legend_.note.clear();
+    } else if (hasNoValue())
       legend_.note += std::string(legend_.note.empty() ? "no colour: " : ", or ") + "no value";
     const double left = 84 * style_.unit, top = 96 * style_.unit;
     const double room =
@@ -57,7 +59,8 @@ class MapPicture {
     rect_ = {left, top, scale_ * grid.width, scale_ * grid.height};
     size_ = {options.width,
              static_cast<int>(std::max({top + rect_.height + MapFrame::footHeight(style_), 420 * style_.unit,
-                                        render::legendHeight(style_, legend_)}))};
+                                        render::legendHeight(style_, legend_)}) +
+                              groundClassRows() * groundClassHeight())};
   }
 
   render::Image8 draw() {
@@ -76,6 +79,7 @@ class MapPicture {
     frame.drawFoot(canvas, options_.units,
                    nameless == 0 ? "" : fmt::format("{} names have no room", nameless));
     render::drawLegend(canvas, style_, legend_);
+    drawGroundClasses(canvas);
     drawTitle(canvas);
     canvas.text(options_.subtitle, {rect_.x, 64 * style_.unit}, style_.text_px, style_.mutedInk());
     return canvas.pixels();
@@ -90,6 +94,37 @@ class MapPicture {
   }
 
   bool isLeftOut(std::size_t p) const { return std::isnan(grid_.positions[p].latitude_deg); }
+
+  double groundClassHeight() const { return 24 * style_.unit; }
+  double groundClassWidth() const { return 190 * style_.unit; }
+  int groundClassColumns() const {
+    return std::max(1, static_cast<int>((options_.width - rect_.x) / groundClassWidth()));
+  }
+  /// Rows of the legend of the ground's classes, with its heading.
+  int groundClassRows() const {
+    if (options_.ground_classes.empty()) return 0;
+    const int count = static_cast<int>(options_.ground_classes.size()), columns = groundClassColumns();
+    return 1 + (count + columns - 1) / columns;
+  }
+
+  /// A legend at the lower edge.
+  void drawGroundClasses(Canvas& canvas) const {
+    if (options_.ground_classes.empty()) return;
+    const double height = groundClassHeight(), side = 14 * style_.unit;
+    double y = size_.height - (groundClassRows() - 0.5) * height - 6 * style_.unit;
+    canvas.text("Ground: land cover", {rect_.x, y}, style_.small_px, style_.textInk(), Align::left,
+                Weight::bold);
+    for (std::size_t n = 0; n < options_.ground_classes.size(); ++n) {
+      const int column = static_cast<int>(n) % groundClassColumns();
+      if (column == 0) y += height;
+      const double x = rect_.x + column * groundClassWidth();
+      const render::Category& of = options_.ground_classes[n];
+      canvas.rectangle({x, y - side / 2, side, side}, {of.color.value_or(Rgb{}), 1}, 3 * style_.unit);
+      const double room = groundClassWidth() - side - 16 * style_.unit;
+      canvas.text(render::shortenedText(canvas, of.name, style_.small_px, room),
+                  {x + side + 8 * style_.unit, y}, style_.small_px, style_.textInk());
+    }
+  }
 
   /// As large as the picture's width allows.
   void drawTitle(Canvas& canvas) const {
@@ -316,6 +351,24 @@ std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot) {
     if (!has_emitter[p] && platforms[p].side) add(p, platforms[p].name, render::MarkerKind::platform);
   }
   return markers;
+}
+
+std::vector<render::Category> groundClassesOf(const MapGrid& grid, const scenario::LandCover& cover) {
+  std::vector<bool> occurs(cover.classes().size());
+  for (const emfield::Surface::Position& at : grid.positions) {
+    const int found = std::isnan(at.latitude_deg) ? -1 : cover.classAt(at.latitude_deg, at.longitude_deg);
+    if (found >= 0) occurs[static_cast<std::size_t>(found)] = true;
+  }
+  std::vector<render::Category> classes;
+  for (std::size_t c = 0; c < occurs.size(); ++c) {
+    const scenario::CoverClass& of = cover.classes()[c];
+    const bool is_listed = std::any_of(classes.begin(), classes.end(),
+                                       [&](const render::Category& known) { return known.name == of.name; });
+    if (!occurs[c] || is_listed) continue;
+    const auto part = [&](int shift) { return static_cast<float>(of.color >> shift & 255U) / 255; };
+    classes.push_back({0, of.name, Rgb{part(0), part(8), part(16)}});
+  }
+  return classes;
 }
 
 int refinementOf(const MapGrid& grid, int picture_width) {

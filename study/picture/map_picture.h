@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "emscape/base/units.h"
+#include "emscape/render/annotate/legend.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "emscape/scenario/terrain/land_cover.h"
 #include "emscape/study/maps/map.h"
 #include "scenario/map/map_image.h"
 #include "study/picture/map_plane.h"
@@ -35,6 +37,8 @@ struct MapPictureOptions {
   std::vector<std::uint8_t> water;
   std::vector<GeoPoint> shores;
   scenario::MapColors drape;  ///< colours of the squares, instead of the ground; empty: none
+  std::vector<render::Category>
+      ground_classes;  ///< names and colours of the drape's, for a legend below the map
   /// Marks in metres of the plane (marksOf()).
   std::vector<render::GroundLine> lines;
   std::vector<render::GroundPoint> points;
@@ -44,6 +48,9 @@ struct MapPictureOptions {
 
 /// The active emitters of an instant, and the platforms that have a side but no emitter.
 std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot);
+
+/// The classes of the land cover that occur on a grid, those of one name once.
+std::vector<render::Category> groundClassesOf(const MapGrid& grid, const scenario::LandCover& cover);
 
 /// Squares of the ground along a pixel with which a picture of this width has as much relief as it can show.
 int refinementOf(const MapGrid& grid, int picture_width);

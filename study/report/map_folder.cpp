@@ -13,8 +13,10 @@
 #include "emfield/excess/clutter_text.h"
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/legend.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "render/picture/png_comment.h"
 #include "study/files/czml.h"
 #include "study/files/geojson.h"
 #include "study/files/geopackage.h"
@@ -137,6 +139,9 @@ struct MapFolder::State {
     }
     const MapGrid& squares = finer ? *finer : grid;
     if (has_drape) background.drape = drapeOf(squares, study.view.drape, study.terrain.get());
+    if (study.view.drape == scenario::kLandCoverDrape && study.terrain &&
+        study.terrain->landCover() != nullptr)
+      background.ground_classes = groundClassesOf(grid, *study.terrain->landCover());
     if (study.terrain != nullptr) {
       background.ground_msl_m = groundOf(squares, *study.terrain);
     } else {
@@ -175,17 +180,46 @@ struct MapFolder::State {
   }
 
   render::Image8 pictureOf(const Map& map) const {
-    const scenario::Scenario& scenario = *study.scenarios.front();
     const double time_s = map.time_s.value_or(study.times_s.front());
     MapPictureOptions options = background;
     options.title =
-        fmt::format("{}: {}", scenario.name, render::displayText(descriptionOf(map, study.view.units)));
+        fmt::format("{}: {}", titleOfScenarios(), render::displayText(descriptionOf(map, study.view.units)));
     options.subtitle = timesText(map);
     const scenario::Snapshot snapshot =
         scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), time_s);
     options.markers = markersOf(snapshot);
     marks->addTo(options, snapshot);
     return drawMap(*study.grid, map, options);
+  }
+
+  /// The edits of all scenarios, for the files of pictures.
+  std::string changes() const {
+    std::string all;
+    for (const auto& scenario : study.scenarios) {
+      const std::string changes = changesOf(*scenario);
+      all += (all.empty() || changes.empty() ? "" : "\n") + changes;
+    }
+    return all;
+  }
+
+  std::string titleOfScenarios() const {
+    std::string title = scenario::titleOf(*study.scenarios.front());
+    if (study.scenarios.size() > 1) title += " and " + scenario::titleOf(*study.scenarios.back());
+    return title;
+  }
+
+  /// The scenarios of a comparison, and what differs from their files.
+  void addCompared(HtmlReport& report) const {
+    report.section("What is compared");
+    std::vector<std::pair<std::string, std::string>> facts;
+    for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
+      const scenario::Scenario& scenario = *study.scenarios[s];
+      const std::string letter(1, static_cast<char>('A' + s));
+      facts.emplace_back(letter, fmt::format("{} ({})", scenario.name, scenario.file));
+      for (const scenario::Edit& edit : scenario.edits())
+        facts.emplace_back(letter + ", changed", scenario::toString(edit));
+    }
+    report.facts(facts);
   }
 
   void writeHtml(const std::vector<std::string>& files, const std::vector<std::string>& warnings,
@@ -202,8 +236,12 @@ struct MapFolder::State {
     }
     report.summary("clutter: " + emfield::clutterText(*study.scenarios.front()));
     report.warnings(warnings);
-    report.section("Areas and ranges");
-    report.table(tableOf(records));
+    if (study.scenarios.size() == 1) {
+      report.section("Areas and ranges");
+      report.table(tableOf(records));
+    } else {
+      addCompared(report);
+    }
     if (addSections) addSections(report);
     report.section("Maps");
     for (const Picture& picture : pictures) report.picture(picture.image, picture.caption);
@@ -241,7 +279,8 @@ const MapRecord& MapFolder::add(const Map& map) {
     render::Image8 picture = state.pictureOf(map);
     if (state.has_png) {
       record.files.push_back(name + ".png");
-      render::writePng(state.folder / record.files.back(), picture);
+      const std::string png = render::withPngComment(render::encodePng(picture), state.changes());
+      writeWhole(state.folder / record.files.back(), [&](std::ostream& out) { out << png; });
     }
     if (is_in_report) {
       state.pictures.push_back(
@@ -281,6 +320,12 @@ void MapFolder::finish(const std::vector<std::string>& warnings, const std::stri
 
 const std::vector<MapRecord>& MapFolder::records() const {
   return state_->records;
+}
+
+std::vector<std::string> MapFolder::collections() const {
+  std::vector<std::string> files;
+  for (const State::Collection& collection : state_->collections) files.push_back(collection.file);
+  return files;
 }
 
 const std::string& MapFolder::reportJson() const {

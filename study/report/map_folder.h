@@ -54,6 +54,8 @@ class MapFolder {
               const AddSections& add = {});
 
   const std::vector<MapRecord>& records() const;
+  /// Files that contain all maps, relative to the folder.
+  std::vector<std::string> collections() const;
   /// The text of report.json; after finish().
   const std::string& reportJson() const;
 

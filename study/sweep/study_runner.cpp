@@ -113,6 +113,7 @@ struct StudyRunner::Impl {
   /// Variants of the terrain that is kept. Those of one geometry are computed faster.
   void computeTogether(const std::vector<std::size_t>& variants, const std::vector<ScenarioPtr>& scenarios,
                        const std::function<void(VariantResult)>& take) {
+    warnings.clear();
     std::vector<VariantResult> results(variants.size());
     std::vector<std::vector<MeasureOverTime>> measured(variants.size(),
                                                        std::vector<MeasureOverTime>(study.measures.size()));
@@ -185,7 +186,6 @@ void StudyRunner::run(const std::vector<std::size_t>& variants,
                       const std::function<void(VariantResult)>& take, const ProgressSink& progress) {
   std::vector<std::size_t> pending;
   std::vector<ScenarioPtr> scenarios;
-  impl_->warnings.clear();
   const auto compute = [&] {
     if (pending.empty()) return;
     impl_->computeTogether(pending, scenarios, take);

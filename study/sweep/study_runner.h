@@ -42,7 +42,8 @@ class StudyRunner {
   void run(const std::vector<std::size_t>& variants, const std::function<void(VariantResult)>& take,
            const ProgressSink& progress = {});
 
-  /// Warnings of the variants of the last run() so far, each once, without counts.
+  /// Warnings of the variants that were computed together with the last one, each once, without counts; those
+  /// of the scenario's check and of the edits among them.
   const std::set<std::string>& warnings() const;
 
  private:

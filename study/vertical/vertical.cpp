@@ -10,6 +10,7 @@
 #include "emfield/excess/clutter_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/study/maps/area.h"
 #include "emscape/study/maps/coverage.h"
@@ -166,15 +167,17 @@ class Solver {
 std::vector<VerticalCut::Line> contoursOf(const std::vector<float>& values, const VerticalDiagram& diagram) {
   const VerticalRequest& request = diagram.request;
   std::vector<float> levels = values;
-  auto level = static_cast<float>(request.threshold);
+  auto level = static_cast<float>(request.threshold), floor = static_cast<float>(diagram.floor);
   if (request.quantity == Quantity::detection_probability) {
-    std::transform(values.begin(), values.end(), levels.begin(), logOdds);
+    floor = logOdds(0) - 1;
+    std::transform(values.begin(), values.end(), levels.begin(),
+                   [&](float probability) { return probability == 0 ? floor : logOdds(probability); });
     level = logOdds(level);
   }
   const double range_step = diagram.ranges_m[1] - diagram.ranges_m[0];
   const double height_step = diagram.heights_m[1] - diagram.heights_m[0];
   std::vector<VerticalCut::Line> lines;
-  for (const GridLine& of_grid : contourLines(levels, request.ranges, request.heights, level)) {
+  for (const GridLine& of_grid : contourLines(levels, request.ranges, request.heights, level, floor)) {
     lines.emplace_back();
     for (const GridPoint& point : of_grid) {
       lines.back().push_back(
@@ -312,6 +315,7 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
   VerticalDiagram diagram;
   diagram.request = request;
   diagram.scenario = own->name;
+  diagram.title = titleOf(*scenario);
   diagram.emitter = own->emitters[e].name;
   diagram.model = toString(own->emitters[e].propagation.model);
   diagram.clutter = emfield::clutterText(*own, own->emitters[e]);
@@ -340,7 +344,8 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
 
   const Solver solver(request, index, diagram, std::move(options));
   Solved solved = solver.solve(snapshot, below);
-  diagram.warnings = std::move(solved.warnings);
+  diagram.warnings = warningsOf(*scenario);
+  diagram.warnings.insert(diagram.warnings.end(), solved.warnings.begin(), solved.warnings.end());
   if (const std::string outside = scenario::outsideClockText({request.time_s}, scenario->clock);
       !outside.empty())
     diagram.warnings.push_back(outside);

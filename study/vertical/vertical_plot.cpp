@@ -308,8 +308,7 @@ class VerticalPlot {
         isChart() ? fmt::format("smooth earth of {:.3g} times its radius, antenna {:.1f} m above it",
                                 diagram_.k_factor, diagram_.station_msl_m)
                   : fmt::format("antenna at {:.0f} m above mean sea level", diagram_.station_msl_m);
-    const std::string title =
-        fmt::format("{}: {} of {}", diagram_.scenario, legend_.quantity, diagram_.emitter);
+    const std::string title = fmt::format("{}: {} of {}", diagram_.title, legend_.quantity, diagram_.emitter);
     const double room = canvas_.size().width - frame.x - 20 * unit_;
     canvas_.text(title, {frame.x, 26 * unit_},
                  render::fittedSize_px(canvas_, title, 20 * unit_, room, render::Weight::bold),

@@ -265,5 +265,19 @@ TEST(BurnThrough, UnjammedRadarIsAtCeiling) {
   EXPECT_NEAR(east(scenario, "burn_through_margin_db", 20e3), 60, 1e-3);
 }
 
+TEST(JammerToSignal, IsOfTheJammedRadarsWhereAnotherIsNotJammed) {
+  const scenario::Emitter jammer = jammerOf(100);
+  auto scenario = duel(trackingRadar(), jammer, 0, 60e3);
+  const double alone = east(scenario, "jammer_to_signal_db", 20e3);
+  const double margin_db = east(scenario, "burn_through_margin_db", 20e3);
+  scenario::Emitter unjammed = trackingRadar();
+  unjammed.name = "unjammed";
+  unjammed.frequency_hz *= 2;
+  addEmitter(*scenario, middleOf(*scenario), unjammed);
+  EXPECT_NEAR(east(scenario, "jammer_to_signal_db", 20e3), alone, 1e-3);
+  EXPECT_LT(margin_db, 60);
+  EXPECT_NEAR(east(scenario, "burn_through_margin_db", 20e3), 60, 1e-3) << "that radar sees the target";
+}
+
 }  // namespace
 }  // namespace emscape::emfield

@@ -48,7 +48,8 @@ TEST_F(JsonFiles, OtherThanScenariosAreRefusedWithTheirUse) {
       HasSubstr(": a transfer function, not a scenario: `render` and `view` read it with --transfer"));
   EXPECT_THAT(fault("field_0001.raw.json"),
               HasSubstr(": the header of a volume: open field_0001.raw beside it"));
-  EXPECT_THAT(fault("series.json"), HasSubstr(": describes a series of volumes: open its folder"));
+  EXPECT_THAT(fault("series.json"),
+              HasSubstr(": describes a series of volumes, not a scenario: open its folder"));
   EXPECT_EQ(fault("scenario.json"), "");
 }
 

@@ -141,18 +141,18 @@ TEST(PictureSink, WritesOnePngOrANumberedFolder) {
   render::Image8 picture;
   picture.size = {4, 4};
   picture.rgba.assign(4 * 4 * 4, 255);
-  const auto one = makePictureSink(folder / "one.png", "made", 1, picture.size, 10);
+  const auto one = makePictureSink(folder / "one.png", "made", 1, picture.size, 10, "");
   one->add(1, picture, 1);
   one->finish();
   EXPECT_TRUE(std::filesystem::exists(folder / "one.png"));
-  const auto several = makePictureSink(folder / "frames", "a/b", 2, picture.size, 10);
+  const auto several = makePictureSink(folder / "frames", "a/b", 2, picture.size, 10, "");
   for (const int number : {1, 2}) several->add(number, picture, 1);
   several->finish();
   EXPECT_TRUE(std::filesystem::exists(folder / "frames/a_b_0001.png"));
   EXPECT_TRUE(std::filesystem::exists(folder / "frames/a_b_0002.png"));
-  EXPECT_THAT(errorOf([&] { makePictureSink(folder / "one.png", "made", 2, picture.size, 10); }),
+  EXPECT_THAT(errorOf([&] { makePictureSink(folder / "one.png", "made", 2, picture.size, 10, ""); }),
               testing::HasSubstr("one .png for 2 pictures"));
-  EXPECT_THAT(errorOf([&] { makePictureSink(folder / "a.gif", "made", 1, picture.size, 10); }),
+  EXPECT_THAT(errorOf([&] { makePictureSink(folder / "a.gif", "made", 1, picture.size, 10, ""); }),
               testing::HasSubstr("must end in .png or .mp4"));
 }
 

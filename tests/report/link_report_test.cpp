@@ -40,5 +40,24 @@ TEST(Links, ScenarioWithoutThemIsRefused) {
               HasSubstr("there is no link"));
 }
 
+TEST(Links, TellOfLooksBetweenTwoTimesAndPrintAllLooksSinceTheLastPrintedRow) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("links.yaml"),
+                                               {{"emitters.search radar.receiver.bandwidth_hz", "1"}});
+  const auto textOf = [&](const std::string& times) {
+    NamedLinks links{scenario->file, scenario, {}};
+    const emfield::LinkOptions options =
+        linkOptions(*scenario, {"--", times, {"search radar"}, {}, {scenario->targets.front().name}, ""});
+    links.report = computeLinks(scenario, options, {});
+    EXPECT_THAT(links.report.warnings, ::testing::Contains(HasSubstr("is 1 Hz wide"))) << "of the check";
+    std::string text = linksText(links);
+    for (const std::string& warning : links.report.warnings) text += warning + "\n";
+    return text;
+  };
+  EXPECT_THAT(textOf("0:40:20"), HasSubstr(" looks, one every "));
+  const std::string fine = textOf("0:60:0.5");
+  EXPECT_THAT(fine, Not(HasSubstr(" looks, one every ")));
+  EXPECT_THAT(fine, HasSubstr("0.5 from s"));
+}
+
 }  // namespace
 }  // namespace emscape::report

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "emscape/scenario/file/scenario_file.h"
 #include "tests/support/errors.h"
+#include "tests/support/files.h"
 
 namespace emscape::report {
 namespace {
@@ -35,6 +37,22 @@ TEST(MapOptions, NumbersOfTimesReplaceTheirText) {
   EXPECT_EQ(requestOf(options, {}).times_s, (std::vector<double>{0, 5, 10}));
   options.times_s = {1, 7};
   EXPECT_EQ(requestOf(options, {}).times_s, (std::vector<double>{1, 7}));
+}
+
+TEST(AreaOfMaps, WithExchangedOrWrongSignedCoordinatesIsRefusedWithTheMistake) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("jacksboro.yaml"));
+  const auto fault = [&](const std::string& area) {
+    MapOptions options;
+    options.prefix = "--";
+    options.area = area;
+    return test::errorOf([&] { areaOf(options, *scenario); });
+  };
+  EXPECT_THAT(fault("-84.2,36.3,5000"),
+              HasSubstr("--area '-84.2,36.3,5000': of its middle, its position is "));
+  EXPECT_THAT(fault("-84.2,36.3,5000"), HasSubstr("perhaps latitude and longitude are exchanged"));
+  EXPECT_THAT(fault("36.3,84.2,5000"), HasSubstr("perhaps longitude has the other sign"));
+  EXPECT_THAT(fault("bbox:36.2,-84.3,36.4,-84.1"), HasSubstr("exchanged"));
+  EXPECT_EQ(fault("36.3,-84.2,5000"), "");
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "emscape/scenario/file/scenario_file.h"
+#include "tests/support/files.h"
+
 namespace emscape::report {
 namespace {
 
@@ -36,6 +39,26 @@ TEST(JoinedWarnings, TakesNamesAndTextsOfAnyLength) {
   const std::string name(200000, 'n'), text(200000, '5');
   const std::string warning = "emitter '" + name + "': " + text + " m";
   EXPECT_THAT(joinedWarnings({warning, warning}), ElementsAre(warning));
+}
+
+TEST(JoinedWarnings, OfMoreThanThreeThatDifferOnlyInNumbersTheFirstStands) {
+  const auto warning = [](const std::string& gain) {
+    return "gain_dbi=" + gain + ": the gain of " + gain + " dBi is low";
+  };
+  EXPECT_THAT(joinedWarnings({warning("-33"), warning("-32.5"), warning("1e-3")}),
+              ElementsAre(warning("-33"), warning("-32.5"), warning("1e-3")));
+  EXPECT_THAT(
+      joinedWarnings({warning("-33"), warning("-32.5"), "another", warning("1e-3"), warning("2.5e+06")}),
+      ElementsAre(warning("-33") + " (3 more with other numbers)", "another"));
+}
+
+TEST(WarningsOfResults, AreLoggedWithoutThoseOfTheCheckWhichWereLoggedWhenTheScenarioWasRead) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("quick.yaml"),
+                                               {{"emitters.radar.antenna.gain_dbi", "-32"}});
+  ASSERT_FALSE(warningsOf(*scenario).empty());
+  const std::string warning = warningsOf(*scenario).front();
+  EXPECT_THAT(withoutChecks({warning, "A and B: " + warning, "far field"}, {scenario}),
+              ElementsAre("far field"));
 }
 
 }  // namespace

@@ -452,7 +452,9 @@ TEST(EditEveryKey, SLOW_EqualsAFileWithThatValue) {
       SCOPED_TRACE(path + "=" + value);
       ++all;
       const ParseResult edited = editScenario(*scenario, {{path, value}});
-      ScenarioSource source{scenario->source->text, root, {}, {}};
+      ScenarioSource source;
+      source.text = scenario->source->text;
+      source.root = root;
       ASSERT_NO_THROW(applyEdit(source, {path, value}));
       document::ProblemList problems;
       expectSamePlaces(*source.root, *document::readDocument("", source.text.text(), problems));

@@ -9,6 +9,7 @@
 #include "scenario/file/far_outside.h"
 #include "tests/scenario/scenario_files.h"
 #include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::scenario {
 namespace {
@@ -96,6 +97,78 @@ TEST(LikelyMistakes, TheIntervalThatAWarningOffersIsAccepted) {
     }
     EXPECT_EQ(problems, "") << quantity;
   }
+}
+
+TEST(LikelyMistakes, JammersOfAFewHertzAndWithoutABandwidthAreTold) {
+  const auto with = [](const std::string& hz) {
+    return messagesOf("jamming.yaml", {{"emitters.stand-off jammer.bandwidth_hz", hz}});
+  };
+  EXPECT_THAT(
+      with("30"),
+      AllOf(HasSubstr("the signal of jammer 'stand-off jammer' is 30 Hz wide, narrower than any noise"),
+            HasSubstr("'bandwidth_hz' is in hertz")));
+  EXPECT_THAT(with("null"),
+              HasSubstr("jammer 'stand-off jammer' has no 'bandwidth_hz': it is narrower than any receiver"));
+  EXPECT_THAT(with("30e6"), Not(HasSubstr("narrower than")));
+  EXPECT_THAT(with("0"), Not(HasSubstr("narrower than"))) << "so it is written";
+}
+
+TEST(LikelyMistakes, RegionsAboveAllEmittersOrBelowTheGroundAreTold) {
+  const auto with = [](const std::string& height_m) {
+    const auto scenario =
+        loadScenario(test::shippedScenario("jacksboro.yaml"), {{"region.origin.height_msl_m", height_m}});
+    const TerrainPtr terrain = loadTerrain(*scenario);
+    return outsideHeightsText(snapshotAt(scenario, terrain.get(), 0), terrain.get());
+  };
+  EXPECT_EQ(with("0"), "");
+  EXPECT_THAT(with("5000"), HasSubstr("have no emitter: the nearest is '"));
+  EXPECT_THAT(with("-11000"), HasSubstr("are below all ground"));
+}
+
+TEST(ScenarioWarnings, StayWithTheScenarioAndItsEdits) {
+  const std::vector<Edit> low{{"emitters.radar.antenna.gain_dbi", "-32"}};
+  const auto scenario = loadScenario(test::shippedScenario("quick.yaml"), low);
+  const auto told =
+      testing::Contains(HasSubstr("emitters.radar.antenna.gain_dbi=-32: the gain of -32.00 dBi is "));
+  EXPECT_THAT(warningsOf(*scenario), told);
+  EXPECT_THAT(warningsOf(*editScenario(*scenario, {{"emitters.radar.power_w", "5"}}).scenario), told);
+  EXPECT_THAT(warningsOf(*withEdits(*scenario, {})), Not(told));
+}
+
+TEST(ScenarioWarnings, OfStepsAreThoseForWhichTheScenarioWasRead) {
+  const std::vector<Edit> long_step{{"step_s", "100"}, {"duration_s", "60"}};
+  const auto read = [&](ReadFor read_for) {
+    const auto scenario = loadScenario(test::shippedScenario("quick.yaml"), long_step, read_for);
+    return warningsOf(*editScenario(*scenario, {{"emitters.radar.power_w", "5"}}).scenario);
+  };
+  EXPECT_THAT(read(ReadFor::series), testing::Contains(HasSubstr("'step_s'")));
+  EXPECT_THAT(read(ReadFor::chosen_times), Not(testing::Contains(HasSubstr("'step_s'"))));
+}
+
+TEST(OtherFiles, InPlaceOfAScenarioAreNamedWithTheirUse) {
+  const test::TemporaryFolder folder;
+  const auto faultOf = [&](const std::string& name, const std::string& bytes) {
+    folder.write(name, bytes);
+    std::string all;
+    for (const Problem& problem : parseScenario(folder / name).problems) all += problem.message + "\n";
+    return all;
+  };
+  EXPECT_EQ(faultOf("s.yaml", "scenario: a.yaml\nmeasures: []\nsweep: {}\n"),
+            "a study, not a scenario: `emscape study` computes it; it names its scenario\n");
+  EXPECT_EQ(faultOf("v.json", R"({"camera": "orbit"})"),
+            "a view file, not a scenario: `render` and `view` read it with --state\n");
+  EXPECT_EQ(faultOf("e.json", R"({"scenario": "x", "emitters": ["a"], "rows": [], "warnings": []})"),
+            "a result of emscape, not a scenario\n");
+  EXPECT_EQ(faultOf("g.json", R"({"type": "FeatureCollection", "features": []})"),
+            "GeoJSON, not a scenario\n");
+  EXPECT_EQ(faultOf("track.kml", "<?xml version=\"1.0\"?><kml/>"),
+            "is a recording: `emscape import` makes a scenario of it\n");
+  EXPECT_EQ(faultOf("field.vdb", std::string(100, '\0')),
+            "is a volume: `render`, `view` and `info` read it\n");
+  EXPECT_THAT(faultOf("N44W072.hgt", std::string(100, '\1')),
+              HasSubstr("is an elevation file or another raster"));
+  EXPECT_THAT(faultOf("p.msi", "NAME x"), HasSubstr("is an antenna's file"));
+  EXPECT_THAT(faultOf("picture", std::string("\x89PNG\0\0", 6)), HasSubstr("is not text"));
 }
 
 }  // namespace

@@ -53,5 +53,12 @@ TEST(ContourLines, PartASaddleByItsMean) {
   EXPECT_TRUE(contourLines({0, 0, 0, 0}, 2, 2, 0.5f).empty());
 }
 
+TEST(ContourLines, BesideValuesAtTheFloorRunMidwayBetweenThePosts) {
+  const std::vector<float> values{-120, 20, -120, 20};
+  EXPECT_NEAR(contourLines(values, 2, 2, 10).front().front().x, 130.0 / 140, 1e-6);
+  const std::vector<GridLine> lines = contourLines(values, 2, 2, 10, -120);
+  for (const GridPoint& point : lines.front()) EXPECT_EQ(point.x, 0.5);
+}
+
 }  // namespace
 }  // namespace emscape::study

@@ -287,5 +287,35 @@ TEST(Exposure, StepsLongerThanScanAreReported) {
   EXPECT_TRUE(std::isnan(exposure.together.cumulative_probability));
 }
 
+TEST(Exposure, TellsOfLooksThatFallBetweenTwoTimesAndWhenAllLooksReachTheThreshold) {
+  const Given given("links.yaml");
+  ExposureRequest request;
+  request.platform = 4;
+  request.times_s = {0, 4, 8, 12, 16, 20};
+  const auto looks = ::testing::Contains(HasSubstr(" looks, one every "));
+  const Exposure fine = computeExposure(given.scenario, given.terrain, request, {});
+  EXPECT_THAT(fine.warnings, ::testing::Not(looks));
+  request.times_s = {0, 20};
+  const Exposure coarse = computeExposure(given.scenario, given.terrain, request, {});
+  EXPECT_THAT(coarse.warnings, looks);
+  EXPECT_THAT(coarse.warnings, ::testing::Contains(HasSubstr("s or less take each look by itself")));
+  std::optional<double> first_s;
+  for (const ExposureRow& row : fine.rows)
+    if (!first_s && row.cumulative_probability >= request.threshold) first_s = row.time_s;
+  EXPECT_EQ(fine.together.cumulative_first_s, first_s);
+  request.look = scenario::RadarAim::scan;
+  EXPECT_THAT(computeExposure(given.scenario, given.terrain, request, {}).warnings, ::testing::Not(looks));
+}
+
+TEST(Exposure, CarriesTheWarningsOfTheScenariosCheck) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("links.yaml"),
+                                               {{"emitters.search radar.receiver.bandwidth_hz", "1"}});
+  ExposureRequest request;
+  request.platform = 4;
+  request.times_s = {0};
+  EXPECT_THAT(computeExposure(scenario, scenario::loadTerrain(*scenario), request, {}).warnings,
+              ::testing::Contains(HasSubstr("is 1 Hz wide")));
+}
+
 }  // namespace
 }  // namespace emscape::study

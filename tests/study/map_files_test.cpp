@@ -629,5 +629,62 @@ TEST(MapObjects, TracksAreCutAtTheAntimeridian) {
   EXPECT_EQ(cutAtAntimeridian(track).size(), 1u);
 }
 
+double areaOf(const MapShapes& shapes, double above) {
+  double area = 0;
+  for (const MapBand& band : shapes.bands)
+    if (band.min >= above) area += OGR_G_Area(band.geometry.get());
+  return area;
+}
+
+TEST(MapShapes, FollowThePixelsBesideThoseWithoutAnEcho) {
+  const Fixture fixture;
+  Map map = fixture.map(MapKind::probability, 80, 0.92, 0.99);
+  std::size_t covered = 0, known = 0;
+  for (std::size_t p = 0; p < map.values.size(); ++p) {
+    if (std::isnan(map.values[p])) continue;
+    ++known;
+    if (p % fixture.grid->width < 20) {
+      map.values[p] = 0;
+    } else {
+      ++covered;
+    }
+  }
+  const MapShapes shapes = shapesOf(*fixture.grid, map, "none");
+  const double pixel_m2 = fixture.grid->cell_m * fixture.grid->cell_m;
+  EXPECT_NEAR(areaOf(shapes, 0.9), covered * pixel_m2, 1e-3 * covered * pixel_m2);
+  EXPECT_NEAR(areaOf(shapes, 0), known * pixel_m2, 1e-3 * known * pixel_m2) << "no gaps";
+  EXPECT_EQ(shapes.bands.front().min, 0);
+  EXPECT_EQ(shapes.bands.size(), 2U) << "none between 0.1 and 0.9";
+  for (const MapBand& band : shapes.bands) EXPECT_TRUE(OGR_G_IsValid(band.geometry.get()));
+  std::fill(map.values.begin(), map.values.end(), 0.0F);
+  EXPECT_EQ(shapesOf(*fixture.grid, map, "none").bands.size(), 1U);
+}
+
+TEST(MapFolder, FilesOfAnEditedScenarioSayWhatWasChanged) {
+  Fixture fixture;
+  const std::vector<scenario::Edit> edits{{"emitters.search radar.power_w", "500"},
+                                          {"emitters.jammer.enabled", "false"}};
+  fixture.scenario = scenario::loadScenario(test::shippedScenario("jacksboro.yaml"), edits);
+  const test::TemporaryFolder folder;
+  MapFolder maps(folder.path(), fixture.study(), {"cog", "png", "geojson", "nc", "gpkg"});
+  maps.add(fixture.map(MapKind::level, 80, -100, -20));
+  maps.finish({});
+  const std::string changes =
+      "changed: emitters.search radar.power_w=500\nchanged: emitters.jammer.enabled=false";
+  const Opened tif = open(folder / "maps/value_msl1500m_t80s.tif", GDAL_OF_RASTER);
+  EXPECT_EQ(std::string(tif->GetMetadataItem("EMSCAPE_SCENARIO_CHANGES")), changes);
+  EXPECT_THAT(test::readFile(folder / "maps/value_msl1500m_t80s.png"), HasSubstr("iTXtComment"));
+  EXPECT_THAT(test::readFile(folder / "maps/value_msl1500m_t80s.png"), HasSubstr(changes));
+  EXPECT_EQ(scenario::titleOf(*fixture.scenario), "jacksboro (2 values changed)");
+  const nlohmann::json json = nlohmann::json::parse(test::readFile(folder / "maps/coverage.geojson"));
+  int off = 0;
+  for (const auto& feature : json["features"]) {
+    const auto& properties = feature["properties"];
+    if (properties["layer"] == "emitters")
+      off += properties["enabled"] == (properties["kind"] != "jammer") ? 0 : 1;
+  }
+  EXPECT_EQ(off, 0);
+}
+
 }  // namespace
 }  // namespace emscape::study

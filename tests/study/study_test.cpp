@@ -512,5 +512,54 @@ TEST(Study, RefusesErrorsWithTheirLocation) {
   EXPECT_THAT(ofMeasure("{name: a, over: nowhere.gpkg}"), HasSubstr("nowhere.gpkg: no such file"));
 }
 
+TEST(Study, WarningsOfTheScenarioAndOfItsVariantsAreWarningsOfTheStudy) {
+  const Study study("sweep: {emitters.search radar.receiver.bandwidth_hz: {values: [1.0e6, 2]}}\n");
+  StudyRunner runner(study.spec(), study.plan(), study.terrain(), {});
+  std::set<std::string> all;
+  runner.run({0, 1},
+             [&](const VariantResult&) { all.insert(runner.warnings().begin(), runner.warnings().end()); });
+  EXPECT_THAT(all, ::testing::Contains(AllOf(HasSubstr("emitters.search radar.receiver.bandwidth_hz=2: "),
+                                             HasSubstr("is 2 Hz wide"))));
+}
+
+TEST(Study, PathsOfOneParameterGetTheSameValues) {
+  const Study study(R"(
+sweep:
+  emitters.search radar.power_w: {values: [10, 20], also: [emitters.tracking radar.power_w]}
+samples:
+  count: 3
+  parameters:
+    emitters.search radar.receiver.target_rcs_m2:
+      lognormal: {median: 2, deviation_db: 3}
+      also: [emitters.tracking radar.receiver.target_rcs_m2]
+    atmosphere.k_factor: {uniform: {from: 1.2, to: 1.4}}
+)");
+  const VariantSet& variants = study.spec().variants;
+  EXPECT_EQ(variants.count(), 6U);
+  EXPECT_THAT(variants.paths(),
+              ElementsAre("emitters.search radar.power_w", "emitters.tracking radar.power_w",
+                          "emitters.search radar.receiver.target_rcs_m2",
+                          "emitters.tracking radar.receiver.target_rcs_m2", "atmosphere.k_factor"));
+  for (std::size_t v = 0; v < variants.count(); ++v) {
+    EXPECT_EQ(variants.value(v, 0), variants.value(v, 1));
+    EXPECT_EQ(variants.value(v, 2), variants.value(v, 3));
+    EXPECT_NE(variants.value(v, 2), variants.value(v, 4));
+  }
+  EXPECT_THAT(errorOf("sweep: {atmosphere.k_factor: {values: [1.2], also: [atmosphere.k_factor]}}\n"),
+              HasSubstr("atmosphere.k_factor"));
+  EXPECT_THAT(errorOf("sweep: {atmosphere.k_factor: {values: [1.2], also: [atmosphere.nothing]}}\n"),
+              HasSubstr("nothing"));
+}
+
+TEST(Study, SitesOfAPlatformWithATrackAreRefusedInPlainWords) {
+  EXPECT_THAT(errorOf("sites: {platform: helicopter, grid_m: 5000}\n"),
+              HasSubstr("platform 'helicopter' has a track: sites are for a platform with a position"));
+}
+
+TEST(Study, AScenarioInItsPlaceIsNamed) {
+  EXPECT_THAT(test::errorOf([] { loadStudy(test::shippedScenario("quick.yaml"), {}, "test"); }),
+              HasSubstr("a scenario, not a study: a study names it with 'scenario: FILE'"));
+}
+
 }  // namespace
 }  // namespace emscape::study

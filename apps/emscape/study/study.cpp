@@ -18,6 +18,7 @@
 #include "emscape/base/parallel.h"
 #include "report/maps/output_files.h"
 #include "report/maps/study_results.h"
+#include "report/warnings.h"
 #include "study/sweep/results/part_processes.h"
 
 namespace emscape::app {
@@ -72,7 +73,7 @@ int merge(const study::LoadedStudy& loaded, const study::StudyFolder& folder, bo
           const GlobalOptions& global) {
   if (!partial) checkAllThere(folder, folder.missingParts());
   const report::StudyReport report = report::mergeParts(loaded, folder);
-  for (const std::string& warning : report.warnings) logWarning(warning);
+  report::logWarnings(report.warnings, {loaded.spec.base});
   if (global.json) {
     printJson(report::toJson(report));
   } else {

@@ -14,6 +14,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/work.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "playback/pictures/picture_series.h"
 #include "playback/pictures/picture_sink.h"
 
@@ -31,8 +32,10 @@ void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(i
   selection.independent = true;  // each picture equals the window's at its time
   const auto source = playback::openFrameSource(selection, job.target, {}, &stop);
   std::vector<std::unique_ptr<playback::PictureSink>> sinks;
+  const playback::LoadedScenario* const scene = source->scene();
   sinks.push_back(playback::makePictureSink(job.output, source->name(), source->count(), job.view.size,
-                                            job.frames_per_s));
+                                            job.frames_per_s,
+                                            scene != nullptr ? changesOf(*scene->scenario) : ""));
   done(0, source->count());
   playback::Painter painter(job.view, *source, job.target, /*must_show_isosurface=*/false);
   const std::optional<double> frames_per_s =

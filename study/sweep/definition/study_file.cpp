@@ -12,6 +12,7 @@
 #include "document/schema_check.h"
 #include "document/text_file.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "scenario/file/file_kind.h"
 #include "scenario/map/vector_file.h"
 #include "study/sweep/definition/study_format.h"
 #include "study/sweep/definition/study_reading.h"
@@ -31,7 +32,11 @@ void readMaps(StudyReading& reading, const Section& root) {
                    [&] { spec.times_s = scenario::parseTimes(root.text("times"), spec.base->clock); });
   spec.area = areaOf(spec.base->region);
   if (root.has("area")) {
-    reading.reportAt(root.locationOf("area"), [&] { spec.area = parseArea(root.text("area")); });
+    reading.reportAt(root.locationOf("area"), [&] {
+      spec.area = parseArea(root.text("area"));
+      const std::string mistake = mistakenAreaText(spec.area, spec.base->region);
+      if (!mistake.empty()) throw Error(ErrorCode::bad_input, "area: " + mistake);
+    });
   }
   const scenario::Region& region = spec.base->region;
   spec.cell_m =
@@ -77,6 +82,8 @@ StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& 
   StudyReading reading;
   reading.tries_values = tries_values;
   reading.file = file;
+  if (const std::string other = scenario::foreignFileText(file); !other.empty())
+    throw Error(ErrorCode::bad_input, {file, 0, 0}, other);
   const std::string bytes = readWholeText(file, kMaxStudyBytes);
   reading.original =
       document::readDocument(file, document::checkedUtf8(file, bytes, "a study"), reading.problems);
@@ -84,6 +91,10 @@ StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& 
     document::requireNoProblem(reading.problems);
     throw Error(ErrorCode::bad_input, {file, 0, 0}, "the file is empty");
   }
+  using scenario::DocumentKind;
+  const std::string other =
+      scenario::otherDocumentText(scenario::documentKindOf(*reading.original), DocumentKind::study);
+  if (!other.empty()) throw Error(ErrorCode::bad_input, {file, 0, 0}, other);
   const document::DocumentNodePtr node = checkable(file, *reading.original);
   document::checkObject(file, *node, studyFormat(), reading.problems);
   document::requireNoProblem(reading.problems);

@@ -14,6 +14,7 @@ namespace {
 
 using document::DocumentNode;
 using document::DocumentNodePtr;
+using document::KeySpec;
 using document::NodeKind;
 using document::ObjectSpec;
 using document::ValueType;
@@ -48,11 +49,14 @@ const ObjectSpec kLogarithmic{
     "",
     {spec::required("from", kPositive, "first value"), spec::required("to", kPositive, "last value"),
      spec::required("count", kCount, "number of values")}};
+/// Further paths that get the same value.
+const KeySpec kAlso =
+    spec::optional("also", spec::listOf(kText, 1, 100), "further paths that get the same value");
 const ObjectSpec kSweep{"sweep of a parameter",
                         "",
                         {spec::optional("values", spec::listOf(kText, 1, kMaxItems), "a list"),
                          spec::optional("linear", spec::object(kLinear), "equal differences"),
-                         spec::optional("log", spec::object(kLogarithmic), "equal ratios")},
+                         spec::optional("log", spec::object(kLogarithmic), "equal ratios"), kAlso},
                         {{"values", "linear", "log"}}};
 const ObjectSpec kNormal{"normal distribution",
                          "",
@@ -68,7 +72,7 @@ const ObjectSpec kDistribution{"distribution",
                                "",
                                {spec::optional("normal", spec::object(kNormal), ""),
                                 spec::optional("uniform", spec::object(kUniform), ""),
-                                spec::optional("lognormal", spec::object(kLognormal), "")},
+                                spec::optional("lognormal", spec::object(kLognormal), ""), kAlso},
                                {{"normal", "uniform", "lognormal"}}};
 const ObjectSpec kSamples{
     "samples",

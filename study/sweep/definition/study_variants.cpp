@@ -222,7 +222,16 @@ class VariantReader {
         }
       }
       factor.count = factor.values.size();
-      tryColumn(factor, 0, reading_.at(originals->entries[i].position));
+      if (items[i].has("also")) {
+        const std::vector<std::string> also = items[i].texts("also");
+        factor.paths.insert(factor.paths.end(), also.begin(), also.end());
+        std::vector<std::string> repeated;
+        for (const std::string& value : factor.values)
+          repeated.insert(repeated.end(), factor.paths.size(), value);
+        factor.values = std::move(repeated);
+      }
+      for (std::size_t column = 0; column < factor.paths.size(); ++column)
+        tryColumn(factor, column, reading_.at(originals->entries[i].position));
       factors.push_back(std::move(factor));
     }
   }
@@ -233,18 +242,27 @@ class VariantReader {
     Factor factor;
     factor.kind = Factor::Kind::samples;
     factor.count = static_cast<std::size_t>(samples.integer("count"));
-    for (const document::MapEntry& entry : originals->entries) factor.paths.push_back(entry.key);
+    std::vector<std::size_t> item_of_path;
+    for (std::size_t d = 0; d < items.size(); ++d) {
+      factor.paths.push_back(originals->entries[d].key);
+      const std::vector<std::string> also =
+          items[d].has("also") ? items[d].texts("also") : std::vector<std::string>{};
+      factor.paths.insert(factor.paths.end(), also.begin(), also.end());
+      item_of_path.resize(factor.paths.size(), d);
+    }
     const auto seed = static_cast<std::uint64_t>(samples.integer("seed"));
     const int count = samples.integer("count"), dimensions = static_cast<int>(items.size());
     const SamplePoints points = samples.text("method") == "sobol" ? sobolPoints(count, dimensions, seed)
                                                                   : latinHypercube(count, dimensions, seed);
     for (int i = 0; i < count; ++i) {
       for (int d = 0; d < dimensions; ++d) {
-        factor.values.push_back(fmt::format("{}", drawn(items[d], points.at(i, d))));
+        const std::string value = fmt::format("{}", drawn(items[d], points.at(i, d)));
+        const auto copies = std::count(item_of_path.begin(), item_of_path.end(), static_cast<std::size_t>(d));
+        factor.values.insert(factor.values.end(), static_cast<std::size_t>(copies), value);
       }
     }
-    for (std::size_t d = 0; d < items.size(); ++d)
-      tryColumn(factor, d, reading_.at(originals->entries[d].position));
+    for (std::size_t path = 0; path < factor.paths.size(); ++path)
+      tryColumn(factor, path, reading_.at(originals->entries[item_of_path[path]].position));
     return factor;
   }
 
@@ -266,6 +284,12 @@ class VariantReader {
   Factor readSites(const Section& sites) {
     Factor factor;
     factor.kind = Factor::Kind::sites;
+    for (const scenario::Platform& platform : reading_.spec.base->platforms) {
+      if (platform.name == sites.text("platform") && platform.moves())
+        reading_.fault(sites.locationOf("platform"),
+                       fmt::format("platform '{}' has a track: sites are for a platform with a position",
+                                   platform.name));
+    }
     const std::string platform = "platforms." + scenario::pathStep(sites.text("platform")) + ".position.";
     factor.paths = {platform + "latitude_deg", platform + "longitude_deg"};
     std::vector<CandidateSite> candidates;
@@ -316,7 +340,8 @@ class VariantReader {
     } else if (reading_.spec.times_s.size() > 1) {
       reading_.fault(sites.location(), "sites are chosen for one instant: give the study one of 'times'");
     }
-    if (!candidates.empty()) tryEdits(editsOf(factor, 0), sites.locationOf("platform"));
+    if (!candidates.empty() && !reading_.problems.hasErrors())
+      tryEdits(editsOf(factor, 0), sites.locationOf("platform"));
     reading_.spec.sites = search;
     return factor;
   }

@@ -190,7 +190,13 @@ void writeResultsNetcdf(const std::filesystem::path& file, const StudySpec& stud
   if (is_grid) {
     for (const VariantFactor& factor : variants.factors()) {
       dimensions.push_back(writer.dimension(factor.paths.front(), factor.count));
-      writeParameter(writer, "", factor.paths.front(), {dimensions.back()}, factor.values);
+      for (std::size_t path = 0; path < factor.paths.size(); ++path) {
+        std::vector<std::string> values;
+        for (std::size_t setting = 0; setting < factor.count; ++setting)
+          values.push_back(factor.value(setting, path));
+        const std::string& name = factor.paths[path];
+        writeParameter(writer, path == 0 ? "" : name, name, {dimensions.back()}, values);
+      }
     }
   } else {
     dimensions.push_back(writer.dimension("variant", variants.count()));

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "base/files/file_digest.h"
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
 #include "base/text/quantity_text.h"
@@ -72,7 +74,18 @@ class ReportWriter {
   void addInputs() {
     report_.section("Study");
     const std::vector<double>& times_s = study_.times_s;
-    report_.facts({{"Scenario", study_.base->name},
+    std::vector<std::pair<std::string, std::string>> inputs{
+        {"Scenario", fmt::format("{} ({})", study_.base->name, study_.base->file)}};
+    for (const scenario::Edit& edit : study_.base->edits())
+      inputs.emplace_back("Changed by --set", scenario::toString(edit));
+    if (study_.base->terrain) {
+      for (const std::string& file : study_.base->terrain->files)
+        inputs.emplace_back("Terrain",
+                            fmt::format("{}, CRC-32 {:08x}", std::filesystem::path(file).filename().string(),
+                                        digestOf(file).crc32));
+    }
+    report_.facts(inputs);
+    report_.facts({{"Study", study_.file},
                    {"Hash of study, scenario and files", study_.hash},
                    {"Variants computed", fmt::format("{} of {}", computed_.size(), study_.variants.count())},
                    {"Times", times_s.size() == 1 ? fmt::format("{} s", times_s.front())

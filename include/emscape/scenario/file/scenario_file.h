@@ -51,6 +51,13 @@ ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edit
 /// @throws Error (bad_input) as Scenario::set()
 std::shared_ptr<const Scenario> withEdits(const Scenario& scenario, const std::vector<Edit>& edits);
 
+/// The warnings of the check of a scenario's file and edits, each with its place.
+const std::vector<std::string>& warningsOf(const Scenario& scenario);
+/// "first (2 values changed)": the name of a scenario, and how many edits it has; for titles of pictures.
+std::string titleOf(const Scenario& scenario);
+/// "changed: PATH=VALUE", one per line; empty without edits.
+std::string changesOf(const Scenario& scenario);
+
 /// The files that a scenario was read from: its own, tracks, antennas, elevation; absolute or relative to the
 /// working folder.
 std::vector<std::string> filesOf(const Scenario& scenario);

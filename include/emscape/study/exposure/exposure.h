@@ -65,11 +65,13 @@ struct ExposureSummary {
   double longest_gap_s = 0;           ///< longest interval below the threshold; unknown values end it
   double best_fraction = 0;           ///< 0..1: the emitter has the largest value; emitters only
   double cumulative_probability = 0;  ///< after the last time; NaN as in the rows
+  std::optional<double> cumulative_first_s;  ///< first time at which it reaches the threshold
 };
 
 struct Exposure {
   ExposureRequest request;
   std::string scenario, platform, unit;
+  std::string title;                  ///< name of the scenario with the number of edits
   std::string cross_section;          ///< source of the cross section, in words; empty: the quantity has none
   std::vector<int> emitters;          ///< indices into Scenario::emitters; without those on the platform
   std::vector<std::string> names;     ///< of these

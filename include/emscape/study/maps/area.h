@@ -27,6 +27,9 @@ MapArea circularArea(const MapArea::Circle& circle);
 /// antimeridian has west > east).
 /// @throws Error (usage) that names the text
 MapArea parseArea(const std::string& text);
+/// The mistake in the coordinates of an area that is nowhere near the region, and near it without the
+/// mistake; empty: there is none.
+std::string mistakenAreaText(const MapArea& area, const scenario::Region& region);
 
 /// Box of terrain needed by maps of an area: the area, all platforms and a margin.
 scenario::GeoBox terrainBoxOf(const scenario::Scenario& scenario, const MapArea& area);

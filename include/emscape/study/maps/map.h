@@ -35,7 +35,7 @@ enum class PixelAnswer : std::uint8_t {
   exact,    ///< the value
   bound,    ///< the value, of the emitters with a known path and the known times; the others may add to it
   unknown,  ///< no value: elevation data are missing there, or on paths that decide
-  none      ///< no value: left out, below the ground, or at no height or time
+  none      ///< no value: left out, below the ground, at most the floor, or at no height or time
 };
 
 struct Map {
@@ -50,8 +50,12 @@ struct Map {
   std::vector<std::string> labels;  ///< of classes and categories: names of 0, 1 ...
   std::vector<int> colors;  ///< of classes: indices of render::categoryColor(); empty: the class itself
   std::vector<std::uint32_t> label_colors = {};  ///< of categories, 0xAABBGGRR, in place of `colors`
-  int area_class = -1;                           ///< the class whose area is reported; -1: none
-  std::vector<float> values;                     ///< pixels in the grid's order; NaN: no value
+  std::optional<double> floor;                   ///< of levels: pixels at most this have no value
+  std::string note;                              ///< of the legend: "no echo: 100"
+  /// Of decibels about 0, which have the colours of a volume's: 1: values above 0 are of interest; -1: below.
+  int ratio_side = 0;
+  int area_class = -1;        ///< the class whose area is reported; -1: none
+  std::vector<float> values;  ///< pixels in the grid's order; NaN: no value
   /// One per pixel; empty: those with a value are exact, why others have none is not known.
   std::vector<PixelAnswer> answers;
   /// Of the pixels without a value whose answer is known: no height reaches the threshold. None: all pixels
