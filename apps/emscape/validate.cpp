@@ -118,19 +118,21 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, boo
     const emfield::FieldSolver solver(scenario, terrain, options);
     work = report::workEstimateOf(solver, *scenario, terrain.get());
     const std::vector<std::string> reported = terrain ? terrain->warnings() : std::vector<std::string>{};
-    for (const std::string& warning : solver.warnings()) {
-      if (std::find(reported.begin(), reported.end(), warning) != reported.end()) continue;
+    const auto warn = [&](const std::string& warning) {
       Problem problem;
       problem.location.file = scenario->file;
       problem.severity = Severity::warning;
       problem.message = warning;
       problems.push_back(problem);
+    };
+    for (const std::string& warning : solver.warnings()) {
+      if (std::find(reported.begin(), reported.end(), warning) == reported.end()) warn(warning);
     }
     if (!starts) return;  // reported above
     const scenario::Snapshot first =
         scenario::snapshotAt(scenario, terrain.get(), scenario::timesOf(scenario->clock).front());
     if (const std::string heights = scenario::outsideHeightsText(first, terrain.get()); !heights.empty())
-      problems.push_back({{scenario->file, 0, 0}, Severity::warning, heights});
+      warn(heights);
     choices = emfield::modelChoices(first, terrain.get());
   } catch (const Error& error) {
     const bool is_first = std::none_of(problems.begin(), problems.end(), isError);

@@ -270,8 +270,8 @@ TEST(PlatformDrag, SLOW_FollowsTheCursorOverTheGround) {
     const SceneObject* object = objectAt(sample->objects(), from.x + 2, from.y - 2);
     ASSERT_NE(object, nullptr);
     EXPECT_EQ(object->path, "emitters.communications mast");
-    const PlatformDrag drag(picture, *object, from.x + 2, from.y - 2);
-    EXPECT_EQ(drag.platform(), "mast");
+    PlatformDrag drag(picture, *object, from.x + 2, from.y - 2);
+    EXPECT_EQ(drag.object().path, "emitters.communications mast");
     for (int step = 1; step <= 4; ++step) {
       const auto edits = drag.moveTo(picture, from.x + 2 + 4 * step, from.y - 2 + step);
       ASSERT_TRUE(edits);
@@ -289,7 +289,7 @@ TEST(PlatformDrag, SLOW_FollowsTheCursorOverTheGround) {
   }
   // What is above the ground is beside the picture's middle; the sky holds no ground.
   const render::Projected from = pixelOf(*sample, mast);
-  const PlatformDrag drag(*sample->picture(), sample->objects()[mast], from.x, from.y);
+  PlatformDrag drag(*sample->picture(), sample->objects()[mast], from.x, from.y);
   EXPECT_FALSE(drag.moveTo(*sample->picture(), from.x, -500));
 }
 
