@@ -79,7 +79,6 @@ void Painter::onRenderer(const Use& use) {
 
 void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
   annotations_.title = title;
-  if (scene != nullptr && title == scene->scenario->name) annotations_.title = titleOf(*scene->scenario);
   scene_ = scene ? std::optional(*scene) : std::nullopt;
 }
 
@@ -396,6 +395,8 @@ std::string Painter::note(render::Pattern pattern) const {
   std::string text =
       fmt::format("{}, {}", mode, pattern == render::Pattern::full ? "every pixel computed" : "preview");
   if (frame_ && frame_->column_step > 1) text += ", " + columnsText(frame_->column_step);
+  if (const std::string changes = scene_ ? changeCountOf(*scene_->scenario) : ""; !changes.empty())
+    text += ", " + changes;
   if (view_.settings.step_voxels != render::RenderSettings().step_voxels)
     text += fmt::format(", a sample every {:g} voxels", view_.settings.step_voxels);
   return text;

@@ -175,21 +175,22 @@ const scenario::Emitter& emitterOf(const ProfileReport& report) {
 
 ProfileReport profileReport(const std::string& file, const scenario::Scenario& scenario,
                             const ProfileRequest& request) {
-  const auto refuse = [&](const std::string& text) {
-    throw Error(ErrorCode::usage, request.option + ": " + text);
+  const auto refuse = [&](ErrorCode code, const std::string& text) {
+    throw Error(code, request.option + ": " + text);
   };
   const scenario::SitePosition& to = request.to;
   const std::string mistake = scenario::mistakenPlaceText(scenario.region, to.latitude_deg, to.longitude_deg);
-  if (!mistake.empty()) refuse(mistake);
+  if (!mistake.empty()) refuse(ErrorCode::usage, mistake);
   const auto with_point = withPoint(scenario, to);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*with_point);
   if (terrain && to.height_msl_m) {
     const auto ground_m = static_cast<double>(terrain->heightMsl_m(to.latitude_deg, to.longitude_deg));
     if (ground_m - *to.height_msl_m > scenario::kGroundTolerance_m)
-      refuse(fmt::format(
-          "{:g} m above mean sea level are {:.1f} m below the ground there, which is at {:.1f} m; {} "
-          "takes the height above ground",
-          *to.height_msl_m, ground_m - *to.height_msl_m, ground_m, request.agl_option));
+      refuse(ErrorCode::bad_input,
+             fmt::format(
+                 "{:g} m above mean sea level are {:.1f} m below the ground there, which is at {:.1f} m; {} "
+                 "takes the height above ground",
+                 *to.height_msl_m, ground_m - *to.height_msl_m, ground_m, request.agl_option));
   }
   const scenario::Snapshot snapshot = scenario::instantAt(with_point, terrain.get(), request.time_s);
   const PathEnd point{snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m};

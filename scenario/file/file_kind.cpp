@@ -48,6 +48,7 @@ std::string foreignFileText(const std::string& file) {
   if (ending == ".yaml" || ending == ".yml" || ending == ".json") return "";
   static const std::set<std::string> kVolumes{".vdb", ".nvdb", ".vti", ".vtu", ".pvd", ".raw", ".dat"};
   static const std::set<std::string> kAntennas{".msi", ".pln", ".adf", ".ant", ".pattern", ".az", ".el"};
+  if (ending == ".png") return "is a picture (PNG), not a scenario";
   const std::vector<std::string>& recordings = interop::recordingEndings();
   const std::string bytes = firstBytesOf(file);
   if (std::find(recordings.begin(), recordings.end(), ending) != recordings.end() ||

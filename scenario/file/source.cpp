@@ -226,10 +226,14 @@ const std::vector<std::string>& warningsOf(const Scenario& scenario) {
   return scenario.source ? scenario.source->warnings : kNone;
 }
 
-std::string titleOf(const Scenario& scenario) {
+std::string changeCountOf(const Scenario& scenario) {
   const std::size_t count = scenario.edits().size();
-  return scenario.name +
-         (count == 0 ? "" : fmt::format(" ({} value{} changed)", count, count == 1 ? "" : "s"));
+  return count == 0 ? "" : fmt::format("{} value{} changed", count, count == 1 ? "" : "s");
+}
+
+std::string titleOf(const Scenario& scenario) {
+  const std::string changes = changeCountOf(scenario);
+  return scenario.name + (changes.empty() ? "" : " (" + changes + ")");
 }
 
 std::string changesOf(const Scenario& scenario) {

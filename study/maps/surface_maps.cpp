@@ -10,8 +10,8 @@
 #include "emfield/channels/products.h"
 #include "emscape/base/parallel.h"
 #include "emscape/scenario/model/snapshot.h"
-#include "study/maps/causes.h"
 #include "emscape/volume/dense_volume.h"
+#include "study/maps/causes.h"
 
 namespace emscape::study {
 namespace {

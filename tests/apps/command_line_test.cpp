@@ -357,7 +357,7 @@ TEST(CommandLine, PictureInPlaceOfAScenarioIsNamed) {
   writeFile(folder / "map.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16));
   const ProgramResult result = run({"validate", folder / "map.png"});
   EXPECT_EQ(result.status, 3);
-  EXPECT_THAT(result.out + result.err, HasSubstr("this is a picture (PNG), not a scenario"));
+  EXPECT_THAT(result.out + result.err, HasSubstr("is a picture (PNG), not a scenario"));
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ TEST(Profile, RefusesInvalidPathsWithOneError) {
       {"jammer", "36.35,x,900", 2, "--to '36.35,x,900' is not LAT,LON,HEIGHT"},
       {"jammer", "96,-84.25,900", 2, "latitude -90..90 deg"},
       {"jammer", "36.35,-84.25,900,1", 2, "is not LAT,LON,HEIGHT"},
-      {"jammer", "36.35,-84.25,10", 3, "m below ground"},
+      {"jammer", "36.35,-84.25,10", 3, "m below the ground there"},
       {"jammer", "38.35,-84.25,9000", 3, "terrain is missing on the path, "},
   };
   for (const Case& c : cases) {

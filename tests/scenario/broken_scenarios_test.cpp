@@ -141,7 +141,8 @@ output: {quantities: [snr_db], combine: per_emitter}
 TEST_F(DamagedScenario, IsValidBeforeItIsDamaged) {
   const std::string remarks = told(parseScenario(folder_.write("whole.yaml", text_)).problems);
   EXPECT_THAT(remarks, testing::HasSubstr("outside the region"));
-  EXPECT_EQ(std::count(remarks.begin(), remarks.end(), '\n'), 1) << remarks;
+  EXPECT_THAT(remarks, testing::HasSubstr("has no 'bandwidth_hz'"));
+  EXPECT_EQ(std::count(remarks.begin(), remarks.end(), '\n'), 2) << remarks;
 }
 
 TEST_F(DamagedScenario, CutAtAnyByteIsReadOrRefused) {

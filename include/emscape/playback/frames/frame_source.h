@@ -41,7 +41,7 @@ struct Frame : ShownField {
   bool has_field = true;              ///< false: FrameSource::withoutField()
   render::ColorRange color_range;     ///< of the series; none: that of the field's values
   std::optional<FieldBeside> beside = std::nullopt;
-  int column_step = 1;  ///< FieldSolver::columnStep(): above 1 columns between others are interpolated
+  int column_step = 1;    ///< FieldSolver::columnStep(): above 1 columns between others are interpolated
   std::string live = {};  ///< StreamedPoses::told; empty: no stream moves its platforms
 };
 

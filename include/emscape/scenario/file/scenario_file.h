@@ -51,6 +51,9 @@ ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edit
 /// @throws Error (bad_input) as Scenario::set()
 std::shared_ptr<const Scenario> withEdits(const Scenario& scenario, const std::vector<Edit>& edits);
 
+/// "2 values changed" by edits; empty: none.
+std::string changeCountOf(const Scenario& scenario);
+
 /// The warnings of the check of a scenario's file and edits, each with its place.
 const std::vector<std::string>& warningsOf(const Scenario& scenario);
 /// "first (2 values changed)": the name of a scenario, and how many edits it has; for titles of pictures.

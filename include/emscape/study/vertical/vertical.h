@@ -52,7 +52,7 @@ struct VerticalDiagram {
   VerticalRequest request;
   std::string scenario, emitter, model, unit;
   std::string clutter;  ///< trees and buildings in the losses, in words
-  std::string title;  ///< name of the scenario with the number of edits
+  std::string title;    ///< name of the scenario with the number of edits
   double latitude_deg = 0, longitude_deg = 0;
   double station_msl_m = 0;  ///< of the emitter; smooth_earth: above that surface
   double station_agl_m = 0;
