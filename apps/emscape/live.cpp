@@ -19,6 +19,7 @@
 #include "apps/common/stream_options.h"
 #include "apps/emscape/subcommands.h"
 #include "base/event.h"
+#include "emscape/base/backend.h"
 #include "emscape/base/error.h"
 #include "emscape/base/work.h"
 #include "emscape/emfield/solver/field_solver.h"
@@ -49,8 +50,8 @@ struct LiveFieldStatus {
 class LiveField {
  public:
   /// @param writes  the fields are written: all columns of each are computed
-  LiveField(playback::LiveBattlefield& battlefield, bool writes)
-      : battlefield_(battlefield), writes_(writes) {}
+  LiveField(playback::LiveBattlefield& battlefield, Backend backend, bool writes)
+      : battlefield_(battlefield), backend_(backend), writes_(writes) {}
 
   /// @return true if a field was computed
   bool update() {
@@ -71,6 +72,7 @@ class LiveField {
                                playback::posesOf(indices_, *now.poses, now.arrival_s)->platforms);
       if (!solver_) {
         emfield::FieldOptions options;
+        options.backend = backend_;
         options.allow_missing_terrain = true;
         options.move_tolerance_m = 0;
         solver_ = std::make_unique<emfield::FieldSolver>(loaded_.scenario, loaded_.terrain, options);
@@ -118,6 +120,7 @@ class LiveField {
 
  private:
   playback::LiveBattlefield& battlefield_;
+  Backend backend_;
   const bool writes_;
   playback::LoadedScenario loaded_;
   std::unique_ptr<emfield::FieldSolver> solver_;
@@ -211,7 +214,7 @@ int live(const LiveArguments& arguments, const GlobalOptions& global) {
   request.folder = arguments.folder;
   Event changed;
   playback::LiveBattlefield battlefield(request, [&changed] { changed.set(); });
-  LiveField field(battlefield, !arguments.folder.empty());
+  LiveField field(battlefield, parseBackend(global.backend), !arguments.folder.empty());
   const double begin_s = playback::steadyTime_s();
   const auto tell = [&] {
     const playback::StreamStatus status = battlefield.status();
