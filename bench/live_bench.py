@@ -42,9 +42,11 @@ def header(kind, length):
     return struct.pack(">BBBBIHH", 7, 1, kind, 1, timestamp(), length, 0)
 
 
-def state(entity, marking, place):
+def state(entity, marking, place, velocity=(0, 0, 0)):
+    """Of an entity that stands, or moves along a straight line (m/s)."""
+    algorithm = 2 if any(velocity) else 1
     body = struct.pack(">3HBB", 1, 1, entity, 1, 0) + struct.pack(">BBHBBBB", 1, 1, 225, 0, 0, 0, 0) + bytes(8)
-    body += struct.pack(">3f3d3fIB15x", 0, 0, 0, *place, 0, 0, 0, 0, 1) + struct.pack(">6fB", *[0] * 6, 1)
+    body += struct.pack(">3f3d3fIB15x", *velocity, *place, 0, 0, 0, 0, algorithm) + struct.pack(">6fB", *[0] * 6, 1)
     return header(1, 144) + body + marking.encode().ljust(11, b"\0")[:11] + bytes(4)
 
 
@@ -102,8 +104,12 @@ def emission(entity):
 
 def moving(entity, past_s):
     """The state of an entity that goes north at 20 m/s."""
-    latitude_deg = 36.2 + entity % 40 * 0.004 + 20 * past_s / 111200
-    return state(entity, f"E{entity}", ecef(latitude_deg, -84.3 + entity // 40 * 0.004, 900))
+    def place(at_s):
+        return ecef(36.2 + entity % 40 * 0.004 + 20 * at_s / 111200, -84.3 + entity // 40 * 0.004, 900)
+
+    here = place(past_s)
+    velocity = [after - before for before, after in zip(here, place(past_s + 1))]
+    return state(entity, f"E{entity}", here, velocity)
 
 
 def exercise(arguments):
