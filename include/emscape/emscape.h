@@ -21,6 +21,7 @@
 #include "emscape/emfield/columns/terrain_mesh.h"
 #include "emscape/emfield/link/link.h"
 #include "emscape/emfield/link/path_budget.h"
+#include "emscape/emfield/link/path_cause.h"
 #include "emscape/emfield/link/path_excess.h"
 #include "emscape/emfield/link/path_profile.h"
 #include "emscape/emfield/solver/field_solver.h"

@@ -142,7 +142,9 @@ TEST(PixelsOfMaps, SLOW_EqualProfileWithEveryModel) {
   EXPECT_GT(compared, 3000u);
 }
 
-// A map has the mean over cells between marched azimuths, `profile` the field of the path's own.
+// A map has the mean over cells between marched azimuths, `profile` the field of the path's own. A map has at
+// most 4096 heights, `profile` 32768: at high frequencies its largest angle is smaller, and less field comes
+// down behind steep ridges.
 // With EMSCAPE_PIXELS, that many pixels of each site; otherwise 20 of two sites.
 TEST(PixelsOfMaps, SLOW_ParabolicEquationGivesMeansOfCells) {
   const char* const pixels = std::getenv("EMSCAPE_PIXELS");
@@ -158,7 +160,7 @@ TEST(PixelsOfMaps, SLOW_ParabolicEquationGivesMeansOfCells) {
                      fmt::format("{:.2f} dB", Differences::within(found.power_db, part)));
     }
     EXPECT_LE(Differences::within(found.power_db, 0.5), 2);
-    EXPECT_LE(Differences::within(found.power_db, 0.9), 10);
+    EXPECT_LE(Differences::within(found.power_db, 0.9), 30);
   }
 }
 
