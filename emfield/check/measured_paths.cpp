@@ -49,7 +49,8 @@ class RoleValues {
     }
     for (const auto& [role, column] : columns) {
       const auto& roles = measuredRoles();
-      if (std::none_of(roles.begin(), roles.end(), [&](const MeasuredRole& r) { return role == r.name; }))
+      if (std::none_of(roles.begin(), roles.end(),
+                       [&name = role](const MeasuredRole& r) { return name == r.name; }))
         throw Error(ErrorCode::usage,
                     fmt::format("--columns: no value is called '{}'; values are {}", role, namesOfRoles()));
     }
