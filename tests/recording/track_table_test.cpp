@@ -4,7 +4,7 @@
 #include <zlib.h>
 
 #include "emscape/base/geodesy/geoid.h"
-#include "recording/read_recording.h"
+#include "tests/recording/read_as.h"
 #include "tests/support/errors.h"
 #include "tests/support/temporary_folder.h"
 
@@ -12,14 +12,6 @@ namespace emscape::interop {
 namespace {
 
 using testing::HasSubstr;
-
-/// Reads a file by its content, as import does.
-Recording readAs(const std::string& name, const std::string& text, const ReadOptions& options = {}) {
-  const test::TemporaryFolder folder;
-  return readRecording(folder.write(name, text), options);
-}
-
-constexpr std::int64_t kSix_ms = 1780293600000;  // 2026-06-01T06:00:00Z
 
 constexpr const char* kTwoAircraft =
     "Time,Tail Number,lat,lon,alt_m\n2026-06-01T06:00:00Z,CC-AAA,-33.45,-70.55,3000\n"

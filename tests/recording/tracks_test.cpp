@@ -7,9 +7,9 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
-#include "recording/read_recording.h"
 #include "recording/tracks/interpolated_track.h"
 #include "recording/tracks/track_formats.h"
+#include "tests/recording/read_as.h"
 #include "tests/support/errors.h"
 #include "tests/support/reference_data.h"
 #include "tests/support/temporary_folder.h"
@@ -18,14 +18,6 @@ namespace emscape::interop {
 namespace {
 
 using testing::HasSubstr;
-
-/// Reads a file by its content, as import does.
-Recording readAs(const std::string& name, const std::string& text, const ReadOptions& options = {}) {
-  const test::TemporaryFolder folder;
-  return readRecording(folder.write(name, text), options);
-}
-
-constexpr std::int64_t kSix_ms = 1780293600000;  // 2026-06-01T06:00:00Z
 
 TEST(Gpx, TracksAreObjectsAndWaypointsFixedOnes) {
   const Recording r =
