@@ -12,4 +12,10 @@ Device findDevice() {
   return device;
 }
 
+void setDeviceLimit(int) {}
+
+int deviceCount() {
+  return 0;
+}
+
 }  // namespace emscape

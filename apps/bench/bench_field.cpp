@@ -13,6 +13,7 @@
 #include "apps/common/interrupt.h"
 #include "apps/common/target.h"
 #include "base/stopwatch.h"
+#include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/emfield/solver/field_solver.h"
@@ -122,7 +123,8 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
         return std::make_unique<FieldBench>(input, options.repeats, target);
       });
   FieldBench& bench = *opened;
-  const std::string device = bench.target().device();
+  const int gpus = bench.target().onGpu() ? deviceCount() : 1;
+  const std::string device = (gpus > 1 ? fmt::format("{} x ", gpus) : "") + bench.target().device();
   const double tolerance_m = bench.tolerance_m();
   constexpr double kTurn_rad = 0.1;
   const Measured moved = bench.measure([&](scenario::Snapshot& snapshot, int repeat) {

@@ -17,9 +17,20 @@ namespace emscape::app {
 struct GlobalOptions {
   std::string backend = "auto";
   int threads = 0;  ///< 0: one per core
+  int devices = 1;  ///< 0: all
   bool json = false;
   bool quiet = false;
 };
+
+/// Adds the option of the number of GPUs.
+inline CLI::Option* addDevicesOption(CLI::App& app, int& devices) {
+  return app
+      .add_option_function<std::string>(
+          "--devices", [&devices](const std::string& text) { devices = text == "all" ? 0 : std::stoi(text); },
+          "GPUs that share out the emitters of a field: a number or all")
+      ->check(CLI::IsMember({"all"}) | CLI::Range(1, 64))
+      ->default_str("1");
+}
 
 /// Adds an option with several values, separated by commas, since a word after a blank may be the
 /// subcommand's input.

@@ -13,6 +13,7 @@
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
 #include "base/text/failure_text.h"
+#include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 
@@ -33,6 +34,7 @@ void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
   app.add_option("--backend", global.backend, "Processor: auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
+  addDevicesOption(app, global.devices);
   app.add_option("--threads", global.threads, "Threads to use; 0: one per core")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
@@ -176,6 +178,7 @@ int runCommandLine(const std::vector<std::string>& words, const AddSubcommands& 
           return status;
         installLog(parsed.global);
         setThreadLimit(parsed.global.threads);
+        setDeviceLimit(parsed.global.devices);
         handleSignals();
         return parsed.action();
       },

@@ -10,6 +10,7 @@
 #include "apps/view/files/message_log.h"
 #include "apps/view/files/recordings.h"
 #include "base/text/failure_text.h"
+#include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
@@ -35,6 +36,7 @@ void show(ViewOptions options) {
       std::fprintf(stderr, "%s\n", line.c_str());
   });
   setThreadLimit(options.threads);
+  setDeviceLimit(options.devices);
   app::handleSignals();
   if (options.stream_request) {
     if (playback::inputKindOf(options.view.input) != playback::InputKind::scenario)

@@ -72,6 +72,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
       "are on one GPU, pictures stay there while they change");
   app.add_option("--backend", options.backend, "Processor: auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  app::addDevicesOption(app, options.devices);
   app.add_option("--threads", options.threads, "Threads to use; 0: one per core")->check(CLI::Range(0, 4096));
   app.add_flag("--quiet,-q", options.quiet, "Only warnings and errors on standard error");
 }

@@ -31,6 +31,27 @@ inline void checkLaunch(const char* kernel) {
   check(cudaGetLastError(), kernel);
 }
 
+/// The GPU of the calling thread.
+inline int currentDevice() {
+  int device = 0;
+  check(cudaGetDevice(&device), "cudaGetDevice");
+  return device;
+}
+
+/// While it lives, the calling thread uses a GPU; then the former one again.
+class OnDevice {
+ public:
+  explicit OnDevice(int device) : former_(currentDevice()) {
+    if (device != former_) check(cudaSetDevice(device), "cudaSetDevice");
+  }
+  ~OnDevice() { cudaSetDevice(former_); }
+  OnDevice(const OnDevice&) = delete;
+  OnDevice& operator=(const OnDevice&) = delete;
+
+ private:
+  int former_;
+};
+
 /// An array in device memory.
 template <class T>
 class Buffer {

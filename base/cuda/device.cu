@@ -1,15 +1,19 @@
 #include <cuda_runtime_api.h>
 
+#include <atomic>
 #include <mutex>
 #include <string>
 
 #include "emscape/base/cuda/device.h"
+#include "emscape/base/error.h"
 
 namespace emscape {
 namespace {
 
 /// A GPU that can run this kernel can run all others, which are compiled for the same architectures.
 __global__ void answer() {}
+
+std::atomic<int> device_limit{1};
 
 std::string whyNot(cudaError_t status) {
   int driver = 0;
@@ -43,12 +47,13 @@ std::string cudaOfBuild() {
 
 Device findDevice() {
   Device device;
-  int count = 0;
+  int count = 0, current = 0;
   cudaError_t status = cudaGetDeviceCount(&count);
   cudaFuncAttributes attributes{};
   if (status == cudaSuccess && count == 0) status = cudaErrorNoDevice;
   if (status == cudaSuccess) status = readName(device.name);
-  if (status == cudaSuccess) status = cudaSetDevice(0);
+  if (status == cudaSuccess) status = cudaGetDevice(&current);
+  if (status == cudaSuccess) status = cudaSetDevice(current);
   if (status == cudaSuccess) status = cudaFuncGetAttributes(&attributes, answer);
   if (status == cudaSuccess) status = cudaMemGetInfo(&device.free_bytes, &device.total_bytes);
   if (status != cudaSuccess) {
@@ -59,6 +64,21 @@ Device findDevice() {
   }
   device.usable = true;
   return device;
+}
+
+void setDeviceLimit(int devices) {
+  device_limit = devices;
+}
+
+int deviceCount() {
+  int present = 0;
+  if (cudaGetDeviceCount(&present) != cudaSuccess) cudaGetLastError();  // clears the sticky error
+  const int limit = device_limit;
+  if (limit > present) {
+    throw Error(ErrorCode::device, "--devices " + std::to_string(limit) + ": this system has " +
+                                       std::to_string(present) + (present == 1 ? " GPU" : " GPUs"));
+  }
+  return limit == 0 ? present : limit;
 }
 
 }  // namespace emscape

@@ -223,6 +223,26 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
   if (launch.member_count > 0 || !launch.keep) run();
 }
 
+template <Merge merge>
+__global__ void __launch_bounds__(kThreads)
+    mergeKernel(ConstAccumulator a, ConstAccumulator b, Accumulator into, std::size_t voxels) {
+  const std::size_t voxel = static_cast<std::size_t>(blockIdx.x) * kThreads + threadIdx.x;
+  if (voxel >= voxels) return;
+  const float of_a = a.value[voxel], of_b = b.value[voxel];
+  if constexpr (merge == Merge::add) {
+    into.value[voxel] = of_a + of_b;
+    if (into.second != nullptr) into.second[voxel] = a.second[voxel] + b.second[voxel];
+  } else if constexpr (merge == Merge::either) {
+    into.value[voxel] = of_a + of_b * (1 - of_a);
+  } else if constexpr (merge == Merge::larger) {
+    into.value[voxel] = of_b > of_a ? of_b : of_a;
+  } else {
+    const float strongest_a = a.second[voxel], strongest_b = b.second[voxel];
+    into.value[voxel] = strongest_b > strongest_a ? of_b : of_a;
+    into.second[voxel] = strongest_b > strongest_a ? strongest_b : strongest_a;
+  }
+}
+
 /// Maps floats to unsigned integers of the same order.
 __device__ unsigned orderOf(float value) {
   const unsigned bits = __float_as_uint(value);
@@ -295,6 +315,47 @@ void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaSt
                                            : combineChannels<kMaxChannels, false, false>;
     combineSome(task, first_valid_k, channels.data() + begin, count, stream);
   }
+}
+
+Merge mergeOf(const ChannelPlan& plan) {
+  if (plan.occupancy_threshold_wm2 > 0) return Merge::either;
+  if (!plan.radars.empty()) {
+    const RadarTask& radar = plan.radars.front();
+    const bool adds = radar.measure == RadarMeasure::detection && radar.reduction == Reduction::sum;
+    return adds ? Merge::either : Merge::larger;
+  }
+  switch (plan.reduction) {
+    case Reduction::sum:
+    case Reduction::count:
+    case Reduction::signal:
+      break;
+    case Reduction::maximum:
+      return Merge::larger;
+    case Reduction::dominant:
+    case Reduction::dominant_mechanism:
+      return Merge::stronger;
+  }
+  return Merge::add;
+}
+
+void mergeSums(Merge merge, ConstAccumulator a, ConstAccumulator b, Accumulator into, std::size_t voxels,
+               cudaStream_t stream) {
+  const auto kernel = [merge] {
+    switch (merge) {
+      case Merge::either:
+        return mergeKernel<Merge::either>;
+      case Merge::larger:
+        return mergeKernel<Merge::larger>;
+      case Merge::stronger:
+        return mergeKernel<Merge::stronger>;
+      case Merge::add:
+        break;
+    }
+    return mergeKernel<Merge::add>;
+  }();
+  kernel<<<static_cast<unsigned>((voxels + kThreads - 1) / kThreads), kThreads, 0, stream>>>(a, b, into,
+                                                                                             voxels);
+  checkLaunch("merge of sums");
 }
 
 volume::ValueRange DeviceRange::range(float floor) const {

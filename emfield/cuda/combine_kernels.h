@@ -24,6 +24,20 @@ void addRadar(const RadarPass& pass, const std::uint16_t* first_valid_k, cudaStr
 /// @param first_valid_k  as for combine
 void addOccupancy(const OccupancyPass& pass, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
+/// How the sums of two groups of emitters become that of all.
+enum class Merge {
+  add,
+  either,  ///< probabilities that exclude nothing: a + b (1 - a)
+  larger,
+  stronger  ///< the value of the larger `second`
+};
+/// @param plan  of a channel
+Merge mergeOf(const ChannelPlan& plan);
+
+/// Merges two groups' sums of all voxels, on the stream. @param into  may be `a`
+void mergeSums(Merge merge, ConstAccumulator a, ConstAccumulator b, Accumulator into, std::size_t voxels,
+               cudaStream_t stream);
+
 /// A value range that kernels extend: floats as integers of the same order.
 struct DeviceRange {
   unsigned lowest = ~0u, highest = 0;

@@ -207,7 +207,9 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   }
   // While the device computes the other models, the host plans the marches.
   const auto count_of_equations = static_cast<int>(equations.size());
+  const int device = emscape::cuda::currentDevice();
   parallelFor(1 + count_of_equations, 1, [&](int begin, int end) {
+    const emscape::cuda::OnDevice here(device);  // the thread may be another one
     for (int i = begin; i < end; ++i) {
       if (i == 0) {
         computeUnmarched(requests, works, stream, clock);

@@ -1,11 +1,11 @@
-// The field's stages on a GPU.
+// The field's stages on one GPU.
 
 #include <algorithm>
 #include <map>
 
 #include "emfield/cuda/combine_kernels.h"
+#include "emfield/cuda/device_engine.h"
 #include "emfield/cuda/device_geometry.h"
-#include "emfield/solver/field_engine.h"
 #include "emfield/solver/power_cache.h"
 #include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
@@ -46,6 +46,7 @@ class DevicePattern {
 struct ChannelBuffers {
   Buffer<float> value, second;                ///< accumulator over all emitters
   Buffer<float> static_value, static_second;  ///< accumulator over the static emitters alone
+  Buffer<float> all_value, all_second;        ///< accumulator over the emitters of all engines
   volume::DeviceVolumeRing ring;
 };
 
@@ -65,7 +66,7 @@ struct DevicePositions {
   Buffer<PatternReach> reaches;
 };
 
-class CudaEngine : public FieldEngine {
+class CudaEngine : public cuda::DeviceEngine {
  public:
   CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecision precision);
 
@@ -78,6 +79,7 @@ class CudaEngine : public FieldEngine {
   void combine(const CombinePass& pass) override;
   std::vector<volume::Volume> makeVolumes(const std::vector<VolumeRequest>& requests) override;
   void planChanged(bool channels_changed) final;
+  void setOthers(std::vector<cuda::DeviceEngine*> others) override { others_ = std::move(others); }
   void exchangeGeometry(int slot, FieldEngine& other, int other_slot) override {
     auto& engine = static_cast<CudaEngine&>(other);
     geometry_.exchange(slot, engine.geometry_, other_slot);
@@ -89,6 +91,7 @@ class CudaEngine : public FieldEngine {
   void addMemory(MemoryUse& use) const override;
 
  private:
+  ConstAccumulator sumsOfAll(std::size_t channel);
   const scenario::PatternView& patternOf(const scenario::AntennaPtr& antenna);
   bool hasSecond(std::size_t channel) const {
     return emfield::hasSecond(setup_.channel_plans[channel].reduction);
@@ -107,6 +110,11 @@ class CudaEngine : public FieldEngine {
   std::map<std::pair<int, int>, DevicePositions> positions_;  ///< by channel and emitter
   std::vector<ChannelBuffers> buffers_;
   Buffer<cuda::DeviceRange> ranges_;
+  int device_ = emscape::cuda::currentDevice();
+  std::vector<cuda::DeviceEngine*> others_;
+  Buffer<float> other_value_, other_second_;  ///< sums of another engine
+  emscape::cuda::Event summed_;               ///< the sums are complete
+  emscape::cuda::Event merged_;               ///< and were read by the engine of all
 };
 
 CudaEngine::CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecision precision)
@@ -207,6 +215,38 @@ void CudaEngine::combine(const CombinePass& pass) {
   clock_.end(&StageTimes::combine_ms, stream_);
 }
 
+/// The sums of a channel over the emitters of all engines.
+ConstAccumulator CudaEngine::sumsOfAll(std::size_t channel) {
+  ChannelBuffers& buffers = buffers_[channel];
+  ConstAccumulator sums{buffers.value.data(), buffers.second.data()};
+  if (others_.empty()) return sums;
+  const bool has_second = hasSecond(channel);
+  const Accumulator all{buffers.all_value.atLeast(voxels_),
+                        has_second ? buffers.all_second.atLeast(voxels_) : nullptr};
+  const auto copy = [&](const Buffer<float>& from, Buffer<float>& to) {
+    check(cudaMemcpyAsync(to.atLeast(voxels_), from.data(), voxels_ * sizeof(float), cudaMemcpyDefault,
+                          stream_),
+          "cudaMemcpyAsync between GPUs");
+    return to.data();
+  };
+  for (cuda::DeviceEngine* const device_engine : others_) {
+    auto& other = static_cast<CudaEngine&>(*device_engine);
+    {
+      const emscape::cuda::OnDevice there(other.device_);
+      other.summed_.record(other.stream_);
+    }
+    other.summed_.holdBack(stream_);
+    const ChannelBuffers& theirs = other.buffers_[channel];
+    const ConstAccumulator more{copy(theirs.value, other_value_),
+                                has_second ? copy(theirs.second, other_second_) : nullptr};
+    merged_.record(stream_);
+    merged_.holdBack(other.stream_);
+    cuda::mergeSums(cuda::mergeOf(setup_.channel_plans[channel]), sums, more, all, voxels_, stream_);
+    sums = {all.value, all.second};
+  }
+  return sums;
+}
+
 std::vector<volume::Volume> CudaEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
   if (requests.empty()) return {};
   std::vector<std::shared_ptr<DeviceVolume>> made;
@@ -221,8 +261,9 @@ std::vector<volume::Volume> CudaEngine::makeVolumes(const std::vector<VolumeRequ
     volume->setMask(*request.first_valid_k);
     cuda::DeviceProductTask task;
     task.product = setup_.channel_plans[request.channel].product;
-    task.accumulator = buffers.value.data();
-    task.second = buffers.second.data();
+    const ConstAccumulator sums = sumsOfAll(static_cast<std::size_t>(request.channel));
+    task.accumulator = sums.value;
+    task.second = sums.second;
     task.first_valid_k = volume->storage().firstValidK();
     task.range = ranges_.data() + r;
     task.voxels = volume->storage().beginWriting(stream_);
@@ -242,8 +283,8 @@ std::vector<volume::Volume> CudaEngine::makeVolumes(const std::vector<VolumeRequ
 void CudaEngine::addMemory(MemoryUse& use) const {
   std::size_t channel_bytes = 0;
   for (const ChannelBuffers& buffers : buffers_) {
-    for (const auto* buffer :
-         {&buffers.value, &buffers.second, &buffers.static_value, &buffers.static_second}) {
+    for (const auto* buffer : {&buffers.value, &buffers.second, &buffers.static_value, &buffers.static_second,
+                               &buffers.all_value, &buffers.all_second}) {
       channel_bytes += buffer->size() * sizeof(float);
     }
     channel_bytes += volume::deviceBytes(setup_.grid.dims, precision_);
@@ -255,8 +296,8 @@ void CudaEngine::addMemory(MemoryUse& use) const {
 
 }  // namespace
 
-std::unique_ptr<FieldEngine> makeCudaEngine(const FieldSetup& setup, int slots,
-                                            volume::VoxelPrecision precision) {
+std::unique_ptr<cuda::DeviceEngine> cuda::makeDeviceEngine(const FieldSetup& setup, int slots,
+                                                           volume::VoxelPrecision precision) {
   return std::make_unique<CudaEngine>(setup, slots, precision);
 }
 

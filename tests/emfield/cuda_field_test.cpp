@@ -1,4 +1,4 @@
-// The field on a GPU against the field on the CPU.
+// The field on one GPU, and shared out over two, against the field on the CPU.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,10 +26,18 @@ using ::testing::HasSubstr;
 
 constexpr double kLatitude_deg = 44.5, kLongitude_deg = -71.5;
 
-class CudaField : public ::testing::Test {
+/// Of a number of GPUs.
+class CudaField : public ::testing::TestWithParam<int> {
  protected:
-  void SetUp() override { EMSCAPE_NEEDS_GPU(); }
+  void SetUp() override {
+    EMSCAPE_NEEDS_GPU();
+    setDeviceLimit(0);
+    if (deviceCount() < GetParam()) GTEST_SKIP() << "this system has one GPU";
+    setDeviceLimit(GetParam());
+  }
+  void TearDown() override { setDeviceLimit(1); }
 };
+INSTANTIATE_TEST_SUITE_P(Gpus, CudaField, ::testing::Values(1, 2));
 
 scenario::AntennaPtr antennaOf(int kind) {
   switch (kind % 5) {
@@ -189,7 +197,7 @@ void expectSameField(Pair& pair, std::mt19937& random, int updates) {
   pair.difference().expectSmall();
 }
 
-TEST_F(CudaField, EqualsCpuOverSmoothEarth) {
+TEST_P(CudaField, EqualsCpuOverSmoothEarth) {
   std::mt19937 random(1);
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
     const auto scenario = randomScenario(
@@ -200,7 +208,7 @@ TEST_F(CudaField, EqualsCpuOverSmoothEarth) {
   }
 }
 
-TEST_F(CudaField, EqualsCpuOverTerrain) {
+TEST_P(CudaField, EqualsCpuOverTerrain) {
   std::mt19937 random(2);
   for (const PropagationModel model : {PropagationModel::horizon, PropagationModel::diffraction}) {
     SCOPED_TRACE(toString(model));
@@ -212,7 +220,7 @@ TEST_F(CudaField, EqualsCpuOverTerrain) {
   }
 }
 
-TEST_F(CudaField, LeaningColumnsEqualCpu) {
+TEST_P(CudaField, LeaningColumnsEqualCpu) {
   std::mt19937 random(11);
   const auto scenario = randomScenario(random, FrameKind::enu, {PropagationModel::diffraction}, 1900, 3);
   scenario->region.size_m = {60e3, 60e3, 40e3};
@@ -222,7 +230,7 @@ TEST_F(CudaField, LeaningColumnsEqualCpu) {
   expectSameField(pair, random, 2);
 }
 
-TEST_F(CudaField, EveryModelEqualsCpu) {
+TEST_P(CudaField, EveryModelEqualsCpu) {
   std::mt19937 random(10);
   const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0);
   for (const PropagationModel model :
@@ -268,7 +276,7 @@ std::shared_ptr<scenario::Scenario> marchedScenario(propagation::Polarization po
   return scenario;
 }
 
-TEST_F(CudaField, MarchesEqualCpu) {
+TEST_P(CudaField, MarchesEqualCpu) {
   using propagation::Polarization;
   FieldOptions options;
   options.allow_missing_terrain = true;
@@ -283,7 +291,7 @@ TEST_F(CudaField, MarchesEqualCpu) {
 }
 
 // Tilted columns have positions between the layers.
-TEST_F(CudaField, MarchesThroughLeaningColumnsEqualCpu) {
+TEST_P(CudaField, MarchesThroughLeaningColumnsEqualCpu) {
   const auto scenario = marchedScenario(propagation::Polarization::horizontal);
   scenario->region.origin.kind = FrameKind::enu;
   Pair pair(scenario, gentleHills(false));
@@ -294,7 +302,7 @@ TEST_F(CudaField, MarchesThroughLeaningColumnsEqualCpu) {
 }
 
 // With more heights than a thread block can hold, the CPU marches.
-TEST_F(CudaField, MarchesOfManyHeightsEqualCpu) {
+TEST_P(CudaField, MarchesOfManyHeightsEqualCpu) {
   const auto scenario = marchedScenario(propagation::Polarization::horizontal);
   scenario->region.size_m = {6e3, 6e3, 1500};
   scenario->region.dims = {12, 12, 20};
@@ -307,7 +315,7 @@ TEST_F(CudaField, MarchesOfManyHeightsEqualCpu) {
   pair.difference().expectSmall(0.05);
 }
 
-TEST_F(CudaField, MarchesOfAnEnsembleEqualCpu) {
+TEST_P(CudaField, MarchesOfAnEnsembleEqualCpu) {
   for (const std::optional<double> quantile : {std::optional<double>(), std::optional<double>(0.7)}) {
     const auto scenario = marchedScenario(propagation::Polarization::horizontal);
     auto air = std::make_shared<propagation::Refractivity>();
@@ -325,7 +333,7 @@ TEST_F(CudaField, MarchesOfAnEnsembleEqualCpu) {
   }
 }
 
-TEST_F(CudaField, ReflectedRaysInEveryPatternEqualCpu) {
+TEST_P(CudaField, ReflectedRaysInEveryPatternEqualCpu) {
   // The codes of reflected rays may differ by one step, which changes nulls 40 dB deep by 0.02 dB.
   std::mt19937 random(12);
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
@@ -347,7 +355,7 @@ TEST_F(CudaField, ReflectedRaysInEveryPatternEqualCpu) {
   }
 }
 
-TEST_F(CudaField, EqualsCpuOverRealTerrain) {
+TEST_P(CudaField, EqualsCpuOverRealTerrain) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   std::mt19937 random(3);
   const auto scenario = randomScenario(random, FrameKind::altitude,
@@ -356,7 +364,7 @@ TEST_F(CudaField, EqualsCpuOverRealTerrain) {
   expectSameField(pair, random, 4);
 }
 
-TEST_F(CudaField, EveryReductionEqualsCpu) {
+TEST_P(CudaField, EveryReductionEqualsCpu) {
   std::mt19937 random(4);
   for (const auto combine :
        {scenario::CombineMode::sum, scenario::CombineMode::max, scenario::CombineMode::per_emitter}) {
@@ -380,7 +388,7 @@ TEST_F(CudaField, EveryReductionEqualsCpu) {
             1e-3 * static_cast<double>(pair.difference().voxels));
 }
 
-TEST_F(CudaField, RadarProductsEqualCpu) {
+TEST_P(CudaField, RadarProductsEqualCpu) {
   std::mt19937 random(6);
   for (const auto look : {scenario::RadarAim::scan, scenario::RadarAim::target}) {
     const auto scenario = randomScenario(random, FrameKind::altitude,
@@ -398,7 +406,7 @@ TEST_F(CudaField, RadarProductsEqualCpu) {
 }
 
 // Scans whose bursts leave azimuths, and bars of rasters, without a look.
-TEST_F(CudaField, LooksInBurstsEqualCpu) {
+TEST_P(CudaField, LooksInBurstsEqualCpu) {
   std::mt19937 random(13);
   for (const char* quantity : {"detection_probability", "detection_age_s"}) {
     for (const auto kind : {scenario::IntervalKind::max_hold, scenario::IntervalKind::cumulative}) {
@@ -431,7 +439,7 @@ TEST_F(CudaField, LooksInBurstsEqualCpu) {
   }
 }
 
-TEST_F(CudaField, MasksTheSameColumnsAcrossMissingTerrain) {
+TEST_P(CudaField, MasksTheSameColumnsAcrossMissingTerrain) {
   std::mt19937 random(5);
   const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, 0.05);
   FieldOptions options;
@@ -451,7 +459,7 @@ TEST_F(CudaField, MasksTheSameColumnsAcrossMissingTerrain) {
   }
 }
 
-TEST_F(CudaField, EmittersBeyondMemoryBoundAreComputedAgain) {
+TEST_P(CudaField, EmittersBeyondMemoryBoundAreComputedAgain) {
   std::mt19937 random(6);
   FieldOptions options;
   options.cache_bytes = 61 * 50 * 40 * 3 + 1;
@@ -460,7 +468,7 @@ TEST_F(CudaField, EmittersBeyondMemoryBoundAreComputedAgain) {
   EXPECT_EQ(pair.gpu().memoryUse().uncached_emitters, 5);
 }
 
-TEST_F(CudaField, KeepsVolumesThatACallerHolds) {
+TEST_P(CudaField, KeepsVolumesThatACallerHolds) {
   std::mt19937 random(7);
   Pair pair(randomScenario(random, FrameKind::altitude, {PropagationModel::horizon}, 900), nullptr);
   scenario::Snapshot snapshot = pair.start();
@@ -477,7 +485,7 @@ TEST_F(CudaField, KeepsVolumesThatACallerHolds) {
   EXPECT_NE(pair.gpu().volumes().front().host()->values, values);
 }
 
-TEST_F(CudaField, InHalfPrecisionLiesWithinItsSteps) {
+TEST_P(CudaField, InHalfPrecisionLiesWithinItsSteps) {
   std::mt19937 random(8);
   const auto scenario = randomScenario(random, FrameKind::altitude, {PropagationModel::free_space}, 900);
   FieldOptions options;
@@ -494,7 +502,25 @@ TEST_F(CudaField, InHalfPrecisionLiesWithinItsSteps) {
   }
 }
 
-TEST_F(CudaField, TooLittleMemoryIsReportedBeforeComputation) {
+TEST_P(CudaField, EmittersThatRemainKeepTheirGeometry) {
+  std::mt19937 random(14);
+  const auto before = randomScenario(random, FrameKind::altitude,
+                                     {PropagationModel::horizon, PropagationModel::diffraction}, 900);
+  FieldOptions options;
+  options.backend = Backend::cuda;
+  FieldSolver edited(before, nullptr, options);
+  edited.update(scenario::snapshotAt(before, nullptr, 0));
+  const auto after = std::make_shared<scenario::Scenario>(*before);
+  after->emitters.erase(after->emitters.begin() + 2);
+  const FieldChanged changed = edited.update(scenario::snapshotAt(after, nullptr, 0));
+  EXPECT_TRUE(changed.moved.empty());
+  FieldSolver anew(after, nullptr, options);
+  anew.update(scenario::snapshotAt(after, nullptr, 0));
+  const auto a = edited.volumes().front().host(), b = anew.volumes().front().host();
+  for (std::size_t v = 0; v < a->values.size(); ++v) ASSERT_NEAR(a->values[v], b->values[v], 1e-4F);
+}
+
+TEST_P(CudaField, TooLittleMemoryIsReportedBeforeComputation) {
   std::mt19937 random(9);
   const auto scenario = randomScenario(random, FrameKind::altitude, {PropagationModel::free_space}, 900);
   scenario->region.dims = {4000, 4000, 2000};

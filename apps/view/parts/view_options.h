@@ -36,6 +36,7 @@ struct ViewOptions {
   bool share_gpu =
       true;  ///< busy pictures are passed from CUDA to OpenGL on the GPU if both use the same one
   std::string backend = "auto";
+  int devices = 1;  ///< 0: all
   int threads = 0;
   bool quiet = false;
 };

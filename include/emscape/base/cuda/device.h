@@ -18,7 +18,14 @@ struct Device {
 /// CUDA version and target architectures of this build: "CUDA 13.0 for 80-real, 90"; empty without CUDA.
 std::string cudaOfBuild();
 
-/// The first GPU of the system that this program can use. Later calls query only free_bytes again.
+/// The GPU of the calling thread: the first one of the system, unless the program has chosen another. Later
+/// calls query only free_bytes again.
 Device findDevice();
+
+/// Sets over how many GPUs of the system a field is shared out, from the next one that is made; 0: all. One
+/// at the start of the program.
+void setDeviceLimit(int devices);
+/// That number. @throws Error (device) if the system has fewer GPUs
+int deviceCount();
 
 }  // namespace emscape
