@@ -13,7 +13,7 @@ void addDeviceVolumeOption(CLI::App& command, std::string& device_volume) {
       .add_option(
           "--device-volume", device_volume,
           "How a GPU stores the volume: float, 32 bit; half, 16 bit: half the memory, 11 significant bits; "
-          "sparse: a NanoVDB grid without voxels at the floor")
+          "sparse: without voxels at the floor")
       ->check(CLI::IsMember({"float", "half", "sparse"}));
 }
 

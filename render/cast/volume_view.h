@@ -8,7 +8,7 @@
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 #include "volume/bricks.h"
-#include "volume/sparse/sparse_block.h"
+#include "volume/sparse/sparse_tiles.h"
 
 namespace emscape::render {
 
@@ -36,7 +36,7 @@ struct VolumeView {
   int masked_below = 0;                         ///< no voxel of a layer from here up is masked
   bool all_finite = true;                       ///< no value is NaN or infinite
   std::uint64_t texture = 0;                    ///< on a GPU: texture of the values; `values` is then null
-  const volume::SparseBlock* sparse = nullptr;  ///< on a GPU, where there is no texture; see SparseVoxels
+  const volume::SparseTile* tiles = nullptr;    ///< of a sparse volume: `texture` is their atlas
   QuantizedValues coded;
 
   EMSCAPE_HD Vec3d lower() const { return {-0.5, -0.5, -0.5}; }

@@ -1,18 +1,24 @@
 #include "render/cuda/adaptive_frame.h"
 #include "render/cuda/cast_rays.h"
-#include "render/cuda/grid_voxels.h"
+#include "render/cuda/texture_samplers.h"
 
 namespace emscape::render::cuda {
 namespace {
 
 template <class Launch>
 void startSparse(const Launch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
-  if (sampling == Sampling::sparse_nearest) {
-    return startVolume<NearestSamplerOf<GridVoxels>, GlobalColors, false>(launch, mode, stream);
+  const bool shades = launch.task.shading.shades_fog;
+  switch (sampling) {
+    case Sampling::sparse_nearest:
+      return startVolume<NearestTileSampler, GlobalColors, false>(launch, mode, stream);
+    case Sampling::sparse_accurate:
+      return shades ? startVolume<AccurateTileSampler, GlobalColors, true>(launch, mode, stream)
+                    : startVolume<AccurateTileSampler, GlobalColors, false>(launch, mode, stream);
+    default:
+      break;
   }
-  using Sampler = TrilinearSamplerOf<GridVoxels>;
-  return launch.task.shading.shades_fog ? startVolume<Sampler, GlobalColors, true>(launch, mode, stream)
-                                        : startVolume<Sampler, GlobalColors, false>(launch, mode, stream);
+  return shades ? startVolume<FilteredTileSampler, SharedColors, true>(launch, mode, stream)
+                : startVolume<FilteredTileSampler, SharedColors, false>(launch, mode, stream);
 }
 
 }  // namespace

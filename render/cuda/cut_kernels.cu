@@ -1,5 +1,4 @@
 #include "base/cuda/cuda_memory.h"
-#include "render/cuda/grid_voxels.h"
 #include "render/cuda/kernels.h"
 #include "render/cuda/pixel_tile.h"
 #include "render/cuda/texture_samplers.h"
@@ -66,9 +65,10 @@ void startAccurate(const RaycastTask& task, Sampling sampling, const bool* only,
                    cudaStream_t stream) {
   switch (sampling) {
     case Sampling::sparse:
-      return start<TrilinearSamplerOf<GridVoxels>>(task, only, layer, stream);
+    case Sampling::sparse_accurate:
+      return start<AccurateTileSampler>(task, only, layer, stream);
     case Sampling::sparse_nearest:
-      return start<NearestSamplerOf<GridVoxels>>(task, only, layer, stream);
+      return start<NearestTileSampler>(task, only, layer, stream);
     case Sampling::nearest:
       return start<NearestTextureSampler>(task, only, layer, stream);
     case Sampling::filtered:

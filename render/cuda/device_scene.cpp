@@ -89,8 +89,8 @@ CastLaunch DeviceScene::launch(const Scene& scene, const volume::DeviceStorage& 
   task.volume.dims = scene.grid().dims;
   task.volume.first_valid_k = storage.firstValidK();
   task.volume.masked_below = storage.maskedBelow();
-  task.volume.texture = sampling == Sampling::filtered ? storage.linearTexture() : storage.pointTexture();
-  task.volume.sparse = storage.sparseBlocks();
+  task.volume.texture = isFiltered(sampling) ? storage.linearTexture() : storage.pointTexture();
+  task.volume.tiles = storage.sparseTiles();
   task.transfer.samples = samples_.data();
   task.transfer.projected = projected_.data();
   task.cut.colors = opaque_.data();

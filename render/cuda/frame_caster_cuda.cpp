@@ -181,7 +181,9 @@ CastLaunch CudaFrameCaster::prepare(const Scene& scene, ImageSize size) {
   mode_ = scene.settings().mode;
   const bool accurate = scene.settings().plain || mode_ == CompositingMode::iso;
   if (volume_->precision() == volume::VoxelPrecision::sparse32) {
-    sampling_ = scene.categorical() ? Sampling::sparse_nearest : Sampling::sparse;
+    sampling_ = scene.categorical() ? Sampling::sparse_nearest
+                : accurate          ? Sampling::sparse_accurate
+                                    : Sampling::sparse;
   } else {
     sampling_ = scene.categorical() ? Sampling::nearest : accurate ? Sampling::accurate : Sampling::filtered;
   }

@@ -60,9 +60,13 @@ enum class Sampling {
   filtered,  ///< by the texture unit, with fractions of 8 bits
   accurate,  ///< as on the CPU, by eight texels
   nearest,
-  sparse,  ///< as on the CPU, by eight voxels of a NanoVDB grid
+  sparse,  ///< as filtered, by the tiles of a sparse volume
+  sparse_accurate,
   sparse_nearest
 };
+constexpr bool isFiltered(Sampling sampling) {
+  return sampling == Sampling::filtered || sampling == Sampling::sparse;
+}
 
 /// A colour of the transfer function's table in shared memory: r g, b a as halves.
 struct HalfColor {
@@ -74,7 +78,7 @@ constexpr int kMaxHalfColors = 4096;
 struct CastLaunch {
   RaycastTask task;  ///< without volume_highest_f
   LatticeTiles tiles;
-  const HalfColor* half_colors = nullptr;   ///< of task.transfer.samples; for Sampling::filtered
+  const HalfColor* half_colors = nullptr;   ///< of task.transfer.samples; for isFiltered()
   const float* volume_highest_f = nullptr;  ///< one
   const float* limits = nullptr;  ///< one per pixel: distance of the ground or a section; null: none
   const float* begins = nullptr;  ///< one per pixel: beginning of its ray at planes; null: not cut

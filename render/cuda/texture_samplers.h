@@ -4,6 +4,7 @@
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 #include "render/cast/volume_view.h"
+#include "volume/sparse/sparse_tiles.h"
 
 namespace emscape::render::cuda {
 
@@ -36,5 +37,41 @@ struct TextureVoxels {
 };
 using AccurateSampler = TrilinearSamplerOf<TextureVoxels>;
 using NearestTextureSampler = NearestSamplerOf<TextureVoxels>;
+
+/// Single voxels of a sparse volume. VolumeView::texture does not filter.
+struct TileVoxels {
+  const VolumeView& volume;
+  volume::SparseTiles tiles;
+  EMSCAPE_HD explicit TileVoxels(const VolumeView& of) : volume(of), tiles(of.tiles, of.dims) {}
+  EMSCAPE_HD float at(int i, int j, int k) const {
+    const volume::SparseTile tile = tiles.at(i, j, k);
+    if (tile.place == volume::SparseTile::kNone) return tile.constant;
+    const auto texel = [&](int axis, int voxel) {
+      return static_cast<float>(volume::SparseTiles::firstTexel(tile.place, axis) +
+                                volume::SparseTiles::inBlock(voxel)) +
+             0.5F;
+    };
+    return texelAt(volume.texture, texel(0, i), texel(1, j), texel(2, k));
+  }
+};
+using AccurateTileSampler = TrilinearSamplerOf<TileVoxels>;
+using NearestTileSampler = NearestSamplerOf<TileVoxels>;
+
+/// As FilteredSampler, within a tile of a sparse volume.
+struct FilteredTileSampler : SamplerOf<FilteredTileSampler> {
+  EMSCAPE_HD static float fetch(const VolumeView& volume, const Vec3f& position) {
+    const CellPosition x(position.x, volume.dims.x);
+    const CellPosition y(position.y, volume.dims.y);
+    const CellPosition z(position.z, volume.dims.z);
+    const volume::SparseTile tile = volume::SparseTiles(volume.tiles, volume.dims).at(x.low, y.low, z.low);
+    if (tile.place == volume::SparseTile::kNone) return tile.constant;
+    const auto texel = [&](int axis, const CellPosition& cell) {
+      return static_cast<float>(volume::SparseTiles::firstTexel(tile.place, axis) +
+                                volume::SparseTiles::inBlock(cell.low)) +
+             cell.fraction + 0.5F;
+    };
+    return texelAt(volume.texture, texel(0, x), texel(1, y), texel(2, z));
+  }
+};
 
 }  // namespace emscape::render::cuda

@@ -77,10 +77,22 @@ struct TexelSource {
   cudaTextureObject_t texture;
   __device__ PointTexels voxels() const { return {texture}; }
 };
+struct TileTexels {
+  SparseTiles tiles;
+  PointTexels texels;
+  __device__ float at(int i, int j, int k) const {
+    const SparseTile tile = tiles.at(i, j, k);
+    if (tile.place == SparseTile::kNone) return tile.constant;
+    return texels.at(SparseTiles::firstTexel(tile.place, 0) + SparseTiles::inBlock(i),
+                     SparseTiles::firstTexel(tile.place, 1) + SparseTiles::inBlock(j),
+                     SparseTiles::firstTexel(tile.place, 2) + SparseTiles::inBlock(k));
+  }
+};
 struct SparseSource {
-  const SparseBlock* blocks;
+  const SparseTile* tiles;
   Dims dims;
-  __device__ SparseVoxels voxels() const { return {blocks, dims}; }
+  cudaTextureObject_t texture;
+  __device__ TileTexels voxels() const { return {{tiles, dims}, {texture}}; }
 };
 
 __global__ void listBlocks(const void* grid, Dims block_dims, SparseBlock* blocks) {
@@ -89,6 +101,50 @@ __global__ void listBlocks(const void* grid, Dims block_dims, SparseBlock* block
   const long long row = block / block_dims.x;
   blocks[block] = sparseBlockAt(grid, static_cast<int>(block % block_dims.x),
                                 static_cast<int>(row % block_dims.y), static_cast<int>(row / block_dims.y));
+}
+
+/// Counts the blocks that need a tile, and numbers them in `place`.
+__global__ void numberTiles(const SparseBlock* blocks, Dims block_dims, SparseTile* tiles,
+                            std::uint32_t* count) {
+  const long long index = static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (index >= block_dims.count()) return;
+  const long long row = index / block_dims.x;
+  const int x = static_cast<int>(index % block_dims.x), y = static_cast<int>(row % block_dims.y),
+            z = static_cast<int>(row / block_dims.y);
+  const float constant = blocks[index].constant;
+  bool is_flat = true;
+  for (int next = 0; next < 8; ++next) {
+    const int i = min(x + (next & 1), block_dims.x - 1), j = min(y + (next >> 1 & 1), block_dims.y - 1),
+              k = min(z + (next >> 2), block_dims.z - 1);
+    const SparseBlock& block = blocks[(static_cast<long long>(k) * block_dims.y + j) * block_dims.x + i];
+    is_flat = is_flat && block.values == nullptr && block.constant == constant;
+  }
+  tiles[index] = {is_flat ? SparseTile::kNone : static_cast<std::int32_t>(atomicAdd(count, 1U)), constant};
+}
+
+/// Sets the places of numbered tiles; each block of threads writes the texels of one.
+__global__ void fillTiles(SparseVoxels voxels, Dims dims, Dims block_dims, Dims atlas_dims, SparseTile* tiles,
+                          cudaSurfaceObject_t atlas) {
+  constexpr int kTexels = SparseTiles::kTexels;
+  const long long index = blockIdx.x;
+  const std::int32_t number = tiles[index].place;
+  if (number == SparseTile::kNone) return;
+  const int row = number / atlas_dims.x;
+  const std::int32_t place = number % atlas_dims.x | row % atlas_dims.y << 10 | row / atlas_dims.y << 20;
+  const long long block_row = index / block_dims.x;
+  const int first[3] = {static_cast<int>(index % block_dims.x) << SparseBlock::kEdgeBits,
+                        static_cast<int>(block_row % block_dims.y) << SparseBlock::kEdgeBits,
+                        static_cast<int>(block_row / block_dims.y) << SparseBlock::kEdgeBits};
+  for (int texel = static_cast<int>(threadIdx.x); texel < kTexels * kTexels * kTexels;
+       texel += static_cast<int>(blockDim.x)) {
+    const int i = texel % kTexels, j = texel / kTexels % kTexels, k = texel / (kTexels * kTexels);
+    const float value = voxels.at(min(first[0] + i, dims.x - 1), min(first[1] + j, dims.y - 1),
+                                  min(first[2] + k, dims.z - 1));
+    surf3Dwrite(value, atlas, (SparseTiles::firstTexel(place, 0) + i) * static_cast<int>(sizeof value),
+                SparseTiles::firstTexel(place, 1) + j, SparseTiles::firstTexel(place, 2) + k);
+  }
+  __syncthreads();
+  if (threadIdx.x == 0) tiles[index].place = place;
 }
 
 template <class Source>
@@ -173,15 +229,14 @@ DeviceStorage::~DeviceStorage() {
 void DeviceStorage::allocate() {
   brick_dims_ = brickDims(dims_, kBrickEdge);
   bricks_.resize(static_cast<std::size_t>(brick_dims_.count()));
-  if (precision_ == VoxelPrecision::float32) allocateTexels(cudaCreateChannelDesc<float>());
-  if (precision_ == VoxelPrecision::float16) allocateTexels(cudaCreateChannelDescHalf());
+  if (precision_ == VoxelPrecision::float32) allocateTexels(cudaCreateChannelDesc<float>(), dims_);
+  if (precision_ == VoxelPrecision::float16) allocateTexels(cudaCreateChannelDescHalf(), dims_);
 }
 
-void DeviceStorage::allocateTexels(const cudaChannelFormatDesc& format) {
-  const cudaExtent extent =
-      make_cudaExtent(static_cast<std::size_t>(dims_.x), static_cast<std::size_t>(dims_.y),
-                      static_cast<std::size_t>(dims_.z));
-  const std::string call = "cudaMalloc3DArray of " + dimsText(dims_) + " voxels";
+void DeviceStorage::allocateTexels(const cudaChannelFormatDesc& format, const Dims& dims) {
+  const cudaExtent extent = make_cudaExtent(
+      static_cast<std::size_t>(dims.x), static_cast<std::size_t>(dims.y), static_cast<std::size_t>(dims.z));
+  const std::string call = "cudaMalloc3DArray of " + dimsText(dims) + " voxels";
   check(cudaMalloc3DArray(&array_, &format, extent, cudaArraySurfaceLoadStore), call.c_str());
   cudaResourceDesc resource{};
   resource.resType = cudaResourceTypeArray;
@@ -210,33 +265,67 @@ void DeviceStorage::release() {
   if (linear_ != 0) cudaDestroyTextureObject(linear_);
   if (surface_ != 0) cudaDestroySurfaceObject(surface_);
   if (array_ != nullptr) cudaFreeArray(array_);
+  point_ = linear_ = 0;
+  surface_ = 0;
+  array_ = nullptr;
 }
 
 /// Calls `use` with the accessor from which kernels read voxels.
 template <class Use>
 void DeviceStorage::withSource(const Use& use) const {
   if (precision_ == VoxelPrecision::sparse32) {
-    use(SparseSource{sparse_blocks_.data(), dims_});
+    use(SparseSource{sparse_tiles_.data(), dims_, point_});
   } else {
     use(TexelSource{point_});
   }
 }
 
+std::size_t DeviceStorage::sparseBytes() const {
+  constexpr std::size_t kTileTexels = SparseTiles::kTexels * SparseTiles::kTexels * SparseTiles::kTexels;
+  const std::size_t texels = static_cast<std::size_t>(atlas_dims_.count()) * kTileTexels;
+  return texels * sizeof(float) + sparse_tiles_.size() * sizeof(SparseTile);
+}
+
 void DeviceStorage::setSparse(const std::uint8_t* grid, std::size_t bytes, cudaStream_t stream) {
-  sparse_.resize(0);
+  release();
+  atlas_dims_ = {0, 0, 0};
   static_assert(1 << SparseBlock::kEdgeBits == kBrickEdge, "as many blocks as bricks");
-  sparse_blocks_.resize(bricks_.size());
-  std::size_t free_bytes = 0, total_bytes = 0;
-  check(cudaMemGetInfo(&free_bytes, &total_bytes), "cudaMemGetInfo");
-  if (bytes > free_bytes) {
+  const auto requireFree = [&](std::size_t needed) {
+    std::size_t free_bytes = 0, total_bytes = 0;
+    check(cudaMemGetInfo(&free_bytes, &total_bytes), "cudaMemGetInfo");
+    if (needed <= free_bytes) return;
     throw Error(ErrorCode::device, "GPU: a sparse volume of " + dimsText(dims_) + " voxels needs " +
-                                       mebibytes(bytes) + ", of which " + mebibytes(free_bytes) +
+                                       mebibytes(needed) + ", of which " + mebibytes(free_bytes) +
                                        " are free");
-  }
-  sparse_.upload(grid, bytes, stream);
-  listBlocks<<<blocksFor(brick_dims_.count()), kThreads, 0, stream>>>(sparse_.data(), brick_dims_,
-                                                                      sparse_blocks_.data());
+  };
+  requireFree(bytes);
+  Buffer<std::uint8_t> on_device;
+  on_device.upload(grid, bytes, stream);
+  Buffer<SparseBlock> blocks(bricks_.size());
+  listBlocks<<<blocksFor(brick_dims_.count()), kThreads, 0, stream>>>(on_device.data(), brick_dims_,
+                                                                      blocks.data());
   checkLaunch("listBlocks");
+  sparse_tiles_.resize(bricks_.size());
+  Buffer<std::uint32_t> counter(1);
+  check(cudaMemsetAsync(counter.data(), 0, sizeof(std::uint32_t), stream), "cudaMemsetAsync");
+  numberTiles<<<blocksFor(brick_dims_.count()), kThreads, 0, stream>>>(blocks.data(), brick_dims_,
+                                                                       sparse_tiles_.data(), counter.data());
+  checkLaunch("numberTiles");
+  std::uint32_t count = 0;
+  counter.download(&count, stream);
+  if (count == 0) return;
+
+  int across = 1;  // tiles along x and y of the atlas
+  while (static_cast<long long>(across) * across * across < count) ++across;
+  const long long layer = static_cast<long long>(across) * across;
+  atlas_dims_ = {across, across, static_cast<int>((count + layer - 1) / layer)};
+  requireFree(sparseBytes());
+  constexpr int kTexels = SparseTiles::kTexels;
+  allocateTexels(cudaCreateChannelDesc<float>(),
+                 {atlas_dims_.x * kTexels, atlas_dims_.y * kTexels, atlas_dims_.z * kTexels});
+  fillTiles<<<static_cast<unsigned>(brick_dims_.count()), kThreads, 0, stream>>>(
+      SparseVoxels(blocks.data(), dims_), dims_, brick_dims_, atlas_dims_, sparse_tiles_.data(), surface_);
+  checkLaunch("fillTiles");
   check(cudaStreamSynchronize(stream), "upload of a sparse volume");
 }
 

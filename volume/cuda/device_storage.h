@@ -10,7 +10,7 @@
 #include "base/cuda/cuda_memory.h"
 #include "emscape/volume/device_volume.h"
 #include "volume/bricks.h"
-#include "volume/sparse/sparse_block.h"
+#include "volume/sparse/sparse_tiles.h"
 
 #if defined(__CUDACC__)
 #include <surface_indirect_functions.h>
@@ -62,7 +62,8 @@ class DeviceStorage {
   void beginReading(cudaStream_t stream) const;
   void endReading(cudaStream_t stream) const;
 
-  /// Positions are those of voxel centres plus 0.5; beyond the outer centres their values are repeated.
+  /// Of the voxels, or of the atlas of a sparse volume. Positions are those of centres plus 0.5; beyond the
+  /// outer centres of voxels their values are repeated.
   cudaTextureObject_t linearTexture() const {
     return linear_;
   }  ///< interpolated by the GPU, with 8-bit fractions
@@ -70,8 +71,8 @@ class DeviceStorage {
   /// In device memory; computed by endWriting().
   BricksView bricks() const;
   /// In device memory; null unless the volume is sparse.
-  const SparseBlock* sparseBlocks() const { return sparse_blocks_.data(); }
-  std::size_t sparseBytes() const { return sparse_.size() + sparse_blocks_.size() * sizeof(SparseBlock); }
+  const SparseTile* sparseTiles() const { return sparse_tiles_.data(); }
+  std::size_t sparseBytes() const;
   /// In device memory, one per column; null if no voxel is masked.
   const std::int32_t* firstValidK() const { return masked_below_ > 0 ? first_valid_k_.data() : nullptr; }
   int maskedBelow() const { return masked_below_; }
@@ -93,7 +94,7 @@ class DeviceStorage {
   void withSource(const Use& use) const;
   void loadLayers(int begin_k, int end_k, float floor, float* values, cudaStream_t stream) const;
   void allocate();
-  void allocateTexels(const cudaChannelFormatDesc& format);
+  void allocateTexels(const cudaChannelFormatDesc& format, const Dims& dims);
   cudaTextureObject_t makeTexture(cudaTextureFilterMode filter) const;
   void release();
   VoxelWriter voxels() const { return {surface_, dims_, precision_}; }
@@ -104,8 +105,8 @@ class DeviceStorage {
   cudaArray_t array_ = nullptr;
   cudaSurfaceObject_t surface_ = 0;
   cudaTextureObject_t linear_ = 0, point_ = 0;
-  emscape::cuda::Buffer<std::uint8_t> sparse_;  ///< a NanoVDB grid
-  emscape::cuda::Buffer<SparseBlock> sparse_blocks_;
+  emscape::cuda::Buffer<SparseTile> sparse_tiles_;
+  Dims atlas_dims_;  ///< tiles along each axis of the atlas
   emscape::cuda::Buffer<std::int32_t> first_valid_k_;
   int masked_below_ = 0;
   Dims brick_dims_;

@@ -15,7 +15,7 @@ namespace emscape::volume {
 enum class VoxelPrecision {
   float32,
   float16,  ///< half the memory; 11 significant bits, -65504..65504
-  sparse32  ///< a NanoVDB grid without the voxels at the floor; written only by upload()
+  sparse32  ///< blocks without those of voxels at the floor; written only by upload()
 };
 
 /// Memory of the GPU for a volume of these dims, derived data included. For sparse volumes it is a lower
