@@ -95,6 +95,24 @@ double azimuthAhead(const std::string& file, const MeasuredCut& horizontal, cons
   return ahead_deg;
 }
 
+/// Angles without rows, far wider than between the others, over which the pattern changes: it is interpolated
+/// there.
+void addHoles(const std::string& file, const char* name, const MeasuredCut& cut, PatternFile& pattern) {
+  constexpr double kWide_deg = 10, kChange_db = 3;
+  const std::vector<double>& angles_deg = cut.angles_deg();
+  const double widest_deg = std::max(kWide_deg, 3 * 360.0 / static_cast<double>(angles_deg.size()));
+  for (std::size_t i = 0; i < angles_deg.size(); ++i) {
+    const bool is_last = i + 1 == angles_deg.size();
+    const double next_deg = is_last ? angles_deg.front() + 360 : angles_deg[i + 1];
+    const double change_db = std::abs(cut.attenuationAt_db(next_deg) - cut.attenuationAt_db(angles_deg[i]));
+    if (next_deg - angles_deg[i] <= widest_deg || change_db <= kChange_db) continue;
+    pattern.warnings.push_back(
+        fmt::format("{}: the {} cut has no rows between {:g} and {:g} deg, where it changes by {:.1f} dB: "
+                    "amplitudes are interpolated there",
+                    file, name, angles_deg[i], is_last ? angles_deg.front() : next_deg, change_db));
+  }
+}
+
 }  // namespace
 
 AntennaPtr antennaOf(const std::string& file, const PatternFile& pattern, double gain_dbi,
@@ -124,6 +142,8 @@ AntennaPtr readAntenna(const std::string& file, double gain_dbi) {
 
 void fillFromCuts(const std::string& file, const MeasuredCut& horizontal, const MeasuredCut& vertical,
                   PatternFile& pattern) {
+  addHoles(file, "horizontal", horizontal, pattern);
+  addHoles(file, "vertical", vertical, pattern);
   const double middle_deg = azimuthAhead(file, horizontal, vertical, pattern);
   pattern.nodes = gridNodes(horizontal.angles_deg(), vertical.angles_deg());
   std::vector<double> horizontal_db;

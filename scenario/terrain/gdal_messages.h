@@ -44,6 +44,12 @@ class GdalMessages {
     if (std::strstr(message, "[json.exception") != nullptr) return;
     self->first_failure_ = message;
     self->first_failure_.resize(std::min(self->first_failure_.find('\n'), self->first_failure_.size()));
+    // Addresses of this process tell nothing.
+    const std::size_t address = self->first_failure_.find("0x");
+    if (address != std::string::npos) {
+      const std::size_t end = self->first_failure_.find_first_not_of("0123456789abcdefABCDEF", address + 2);
+      self->first_failure_.replace(address, std::min(end, self->first_failure_.size()) - address, "the file");
+    }
     // PROJ repeats the whole query of a database that it cannot read.
     if (self->first_failure_.find("SQLite error on SELECT") != std::string::npos)
       self->first_failure_ = "PROJ: its database proj.db cannot be read";

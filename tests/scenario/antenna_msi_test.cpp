@@ -1,5 +1,8 @@
+#include <fmt/core.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -232,6 +235,24 @@ TEST(MsiAntenna, ErrorsHaveReasonAndLocation) {
   file.rewrite(std::string("NAME a\0b\n", 9));
   expectFault([&] { readAntenna(file.path()); }, file.path(), 1, 7, "zero byte");
   expectFault([] { readAntenna("/nowhere/antenna.msi"); }, "/nowhere/antenna.msi", 0, 0, "no such file");
+}
+
+TEST(MsiAntenna, AHoleInACutIsTold) {
+  std::string horizontal, vertical = "VERTICAL 360\n";
+  int rows = 0;
+  for (int angle_deg = 0; angle_deg < 360; ++angle_deg) {
+    const double off_deg = std::min(angle_deg, 360 - angle_deg);
+    vertical += fmt::format("{} {}\n", angle_deg, std::min(30.0, off_deg / 2));
+    if (angle_deg > 20 && angle_deg < 100) continue;
+    horizontal += fmt::format("{} {}\n", angle_deg, std::min(30.0, off_deg / 3));
+    ++rows;
+  }
+  const TemporaryFile file("a.msi",
+                           fmt::format("GAIN 10 dBi\nHORIZONTAL {}\n{}{}", rows, horizontal, vertical));
+  EXPECT_THAT(readPatternFile(file.path()).warnings,
+              testing::ElementsAre(testing::HasSubstr(
+                  "the horizontal cut has no rows between 20 and 100 deg, where it changes "
+                  "by 23.3 dB: amplitudes are interpolated there")));
 }
 
 TEST(MsiAntenna, NameHasOnlyPrintableCharacters) {
