@@ -138,6 +138,7 @@ class TableReader {
   Recording read(LineReader& lines) {
     for (std::string_view line; lines.next(line);) {
       line = lineOf(line);
+      if (columns_.empty() && !line.empty() && line.front() == '#') units_ = headerOf(line);
       if (columns_.empty() ? isComment(line, options_) : line.empty() || line.front() == '#') continue;
       if (columns_.empty() && isBaseStation(line)) {
         columns_ = columnsOfBaseStation();
@@ -148,13 +149,22 @@ class TableReader {
       }
       location_ = fmt::format("line {}", lines.line());
       ++recorder_.tally().records;
-      takeRow(cellsOf(line, separator_));
+      const std::vector<std::string> cells = cellsOf(line, separator_);
+      if (hasSurplus(cells)) {
+        bad(
+            fmt::format("it has {} cells, the header {}; are decimals written with commas, or texts with "
+                        "separators?",
+                        cells.size(), header_.size()));
+      } else {
+        takeRow(cells);
+      }
     }
     if (is_utc_) recorder_.hasUtc();
     recorder_.tellObjectsApartBy(objectsRemedy());
     Recording recording = recorder_.finish();
     recording.has_times_of_day = has_times_of_day_;
     tellUnused(recording.tally);
+    tellLongSteps(recording.tally);
     return recording;
   }
 
@@ -164,6 +174,7 @@ class TableReader {
     header_ = headerOf(line);
     const std::vector<std::string>& header = header_;
     columns_ = columnsOf(header, options_);
+    takeUnitsAbove();
     for (const Column needed : {Column::time, Column::latitude, Column::longitude}) {
       const bool is_in_position = needed != Column::time && columns_.count(Column::position) != 0;
       if (is_in_position || columns_.count(needed) != 0) continue;
@@ -178,6 +189,35 @@ class TableReader {
                                        [i](const auto& column) { return column.second.index == i; });
       if (!is_used && !header[i].empty()) unused_.push_back({i, {}, {}, 0, 0, false});
     }
+  }
+
+  /// Units of heights in a comment above the header that has a cell for each column, as Garmin's avionics
+  /// write it.
+  void takeUnitsAbove() {
+    if (units_.size() != header_.size()) return;
+    for (const Column height : {Column::height_msl, Column::height_ellipsoid, Column::height_pressure}) {
+      const auto found = columns_.find(height);
+      if (found == columns_.end() || found->second.has_unit) continue;
+      const std::string& unit = units_[found->second.index];
+      const auto factor = unit.empty() ? std::nullopt : factorOfUnit(unit);
+      if (!factor) continue;
+      found->second.factor = *factor;
+      found->second.has_unit = true;
+    }
+  }
+
+  /// Whole numbers without a unit that are far apart, in which an object creeps, are no seconds.
+  void tellLongSteps(ReadingTally& tally) const {
+    constexpr double kLongStep_s = 1000, kCreeping_mps = 0.05, kDegree_m = 111e3;
+    const double span_s = last_time_ - first_time_;
+    if (plain_times_ < 3 || span_s < kLongStep_s * static_cast<double>(plain_times_ - 1) || path_deg_ == 0 ||
+        path_deg_ * kDegree_m > kCreeping_mps * span_s)
+      return;
+    const std::string name = header_.empty() ? "" : printableText(header_[columns_.at(Column::time).index]);
+    tally.notes.push_back(
+        fmt::format("times of column '{0}' are taken as seconds; they are {1:.6g} apart on average: if they "
+                    "are in microseconds or milliseconds, columns tell it: time={0}:us or time={0}:ms",
+                    name, span_s / static_cast<double>(plain_times_ - 1)));
   }
 
   std::string nameOf(const UnusedColumn& column) const { return printableText(header_[column.index]); }
@@ -287,6 +327,13 @@ class TableReader {
     return told.is_degrees_minutes ? degreesOf(*number) : *number * told.factor;
   }
 
+  /// True if a row has more cells than the header, but for empty ones at its end.
+  bool hasSurplus(const std::vector<std::string>& cells) const {
+    if (is_base_station_ || header_.empty() || cells.size() <= header_.size()) return false;
+    return std::any_of(cells.begin() + static_cast<std::ptrdiff_t>(header_.size()), cells.end(),
+                       [](const std::string& cell) { return !cell.empty(); });
+  }
+
   std::nullopt_t bad(const std::string& reason) {
     countBad(recorder_.tally(), location_, reason);
     return std::nullopt;
@@ -307,6 +354,10 @@ class TableReader {
                                     : (*number - column.day_of_1970) * kSecondsPerDay;
         }
         recorder_.mayBeDays(!column.has_unit);
+        if (!column.has_unit && time == std::floor(time)) {
+          if (plain_times_++ == 0) first_time_ = time;
+          last_time_ = time;
+        }
         if (time > kUnixTime_s) {
           is_utc_ = true;
           tellGpsName(column);
@@ -314,9 +365,10 @@ class TableReader {
         return secondsOf(time);
       }
     }
-    const std::string text = is_compact        ? told->substr(0, 8) + "T" + told->substr(8)
-                             : date == nullptr ? *told
-                                               : *date + " " + *told;
+    std::string text = is_compact        ? told->substr(0, 8) + "T" + told->substr(8)
+                       : date == nullptr ? *told
+                                         : *date + " " + *told;
+    if (const std::string* const offset = cellOf(cells, Column::utc_offset)) text += *offset;
     const DateOrder order = date == nullptr ? column.order : columns_.at(Column::date).order;
     if (const auto time_s = utcSeconds(text, order)) {
       is_utc_ = true;
@@ -394,6 +446,20 @@ class TableReader {
     return bad(fmt::format("its position '{}' cannot be read", printableText(text)));
   }
 
+  /// Letters of other encodings than UTF-8 as Latin-1, so that different ids stay different.
+  static std::string idText(const std::string& id) {
+    return printableText(isUtf8(id) ? id : utf8Of(id, "LATIN1"));
+  }
+
+  /// It has both coordinates in one column.
+  bool isOfFlightradar() const {
+    const auto has = [this](const char* name) {
+      return std::any_of(header_.begin(), header_.end(),
+                         [name](const std::string& cell) { return lowerCase(cell) == name; });
+    };
+    return columns_.count(Column::position) != 0 && has("callsign") && has("direction");
+  }
+
   /// Its heights are in metres, by its documentation.
   bool isOfOpenSky(Column column) const {
     const std::string name = lowerCase(header_[columns_.at(column).index]);
@@ -416,8 +482,7 @@ class TableReader {
                                        : cell->find_first_of("0123456789") == std::string::npos;
       if (is_unknown) continue;
       if (!height_m) return bad(fmt::format("its height '{}' is no number", printableText(*cell)));
-      // As Flightradar24 writes it, which has both coordinates in one column.
-      if (columns_.count(Column::position) != 0 && !columns_.at(column).has_unit) {
+      if (!columns_.at(column).has_unit && isOfFlightradar()) {
         recorder_.assume("height without a unit in a table of Flightradar24: taken as feet");
         *height_m *= kMetresPerFoot;
       } else if (!columns_.at(column).has_unit && options_.columns.find("height") == std::string::npos &&
@@ -442,6 +507,9 @@ class TableReader {
     for (UnusedColumn& column : unused_) column.take(column.index < cells.size() ? cells[column.index] : "");
     const auto time_s = place ? timeOf(cells) : std::nullopt;
     if (!time_s) return;
+    if (last_place_)
+      path_deg_ += std::hypot(place->first - last_place_->first, place->second - last_place_->second);
+    last_place_ = place;
     PoseSample pose;
     pose.t_s = *time_s;
     pose.latitude_deg = place->first;
@@ -459,14 +527,18 @@ class TableReader {
       recorder_.assume("heading beyond a turn: not known");
     }
     const std::string* const id = cellOf(cells, Column::id);
-    recorder_.add(recorder_.objectOf(id == nullptr ? stem_ : printableText(*id)), pose, location_);
+    recorder_.add(recorder_.objectOf(id == nullptr ? stem_ : idText(*id)), pose, location_);
   }
 
   std::string name_, stem_, location_;
   const ReadOptions& options_;
   TrackRecorder recorder_;
-  std::vector<std::string> header_;
+  std::vector<std::string> header_, units_;  ///< units_: the last comment above the header
   Columns columns_;
+  long long plain_times_ = 0;  ///< whole numbers without a unit, since no known time
+  double first_time_ = 0, last_time_ = 0;
+  double path_deg_ = 0;  ///< way of all rows, roughly
+  std::optional<std::pair<double, double>> last_place_;
   char separator_ = ',';
   std::vector<UnusedColumn> unused_;
   std::optional<std::pair<std::size_t, std::size_t>> hemispheres_;  ///< columns of N or S, and of E or W
