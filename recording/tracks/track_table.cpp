@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "base/geodesy/position_text.h"
@@ -13,69 +12,12 @@
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
 #include "recording/common/track_recorder.h"
+#include "recording/tracks/table_cells.h"
 #include "recording/tracks/table_columns.h"
 #include "recording/tracks/track_formats.h"
 
 namespace emscape::interop {
 namespace {
-
-/// Above the first of these numbers a time is since 1970; the others tell in which unit.
-constexpr double kUnixTime_s = 1e8, kUnixTime_ms = 1e11, kUnixTime_us = 1e14, kUnixTime_ns = 1e17;
-
-/// A time since 1970 in seconds.
-double secondsOf(double time) {
-  return time > kUnixTime_ns   ? time / 1e9
-         : time > kUnixTime_us ? time / 1e6
-         : time > kUnixTime_ms ? time / 1000
-                               : time;
-}
-
-/// A date and time in digits alone, YYYYMMDDhhmmss. As a number it would be one of the 26th century.
-bool isCompactDate(std::string_view text) {
-  constexpr std::size_t kDigits = 14;
-  return text.size() >= kDigits && (text.substr(0, 2) == "19" || text.substr(0, 2) == "20") &&
-         text.find_first_not_of("0123456789") >= kDigits && (text.size() == kDigits || text[kDigits] == '.');
-}
-
-/// DDMM.mmmm in degrees.
-double degreesOf(double degrees_minutes) {
-  const double minutes = std::fmod(degrees_minutes, 100);
-  return (degrees_minutes - minutes) / 100 + minutes / 60;
-}
-
-/// True for a number that stands for none: nines, as -9999 or 9999999, and -32768.
-bool isFill(double number) {
-  constexpr double kLongestNines = 1e9, kHighest_m = 1e5;
-  for (double nines = 9999; nines < kLongestNines; nines = 10 * nines + 9) {
-    if (number == -nines || (number == nines && nines >= kHighest_m - 1)) return true;
-  }
-  return number == -32768;
-}
-
-/// A column without a role, as its rows show it.
-struct UnusedColumn {
-  std::size_t index = 0;
-  std::string last;             ///< cell of the row before
-  std::set<std::string> texts;  ///< the first kMaxTexts
-  long long rows = 0;
-  long long turns = 0;  ///< rows whose cell is another one than that before
-  bool has_text = false;
-
-  static constexpr std::size_t kMaxTexts = 1000;
-
-  void take(const std::string& cell) {
-    ++rows;
-    if (cell == last) return;
-    ++turns;
-    last = cell;
-    has_text = has_text || (!cell.empty() && !numberIn(cell));
-    if (texts.size() < kMaxTexts) texts.insert(cell);
-  }
-  /// True if cells repeat as the names of several objects do.
-  bool mayBeNames() const {
-    return texts.size() > 1 && texts.size() < kMaxTexts && 2 * static_cast<long long>(texts.size()) <= rows;
-  }
-};
 
 /// Coordinates from here on are integers, as flight controllers log them.
 constexpr double kScaledFrom = 1e6;
@@ -112,19 +54,6 @@ bool isComment(std::string_view line, const ReadOptions& options) {
   } catch (const Error&) {  // it does not have the columns that were named
     return true;
   }
-}
-
-/// An angle whose parts are apart, "52 06.1 N", as one word, "52:06.1N".
-std::string joinedAngle(const std::string& text) {
-  std::string joined;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool is_blank = text[i] == ' ';
-    const bool is_before_digit = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
-    const bool is_after_digit = !joined.empty() && joined.back() >= '0' && joined.back() <= '9';
-    if (!is_blank) joined += text[i];
-    if (is_blank && is_before_digit && is_after_digit) joined += ':';
-  }
-  return joined;
 }
 
 class TableReader {
@@ -358,7 +287,7 @@ class TableReader {
           if (plain_times_++ == 0) first_time_ = time;
           last_time_ = time;
         }
-        if (time > kUnixTime_s) {
+        if (time > kFirstUnixTime_s) {
           is_utc_ = true;
           tellGpsName(column);
         }
