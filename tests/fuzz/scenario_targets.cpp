@@ -170,7 +170,7 @@ const FuzzTargetsAdded added({
      [] {
        return std::vector<std::string>{"name,latitude_deg,longitude_deg,owner\nhill,52.5,5.25,A\n",
                                        "Name;Lat;Lon\nhill;52,5;5,25\n", "lat\tlon\n52.5\t5.25\n",
-                                       "name,mgrs,height_agl_m\nhill,16S GF 50752 43850,30\n",
+                                       "name,mgrs,height_agl_m\nhill,16S GF 50751 44164,30\n",
                                        "lat;lon\n36d30'36\"N;84 12 0 W\n"};
      }},
     {"antenna_msi", "input.msi",
