@@ -91,6 +91,18 @@ struct PointColumns {
   }
 };
 
+/// Degrees without the last digits that minutes and turns leave.
+double rounded(double degrees) {
+  return std::round(degrees * 1e9) / 1e9;
+}
+
+/// @param text  perhaps in quotes that its seconds end
+std::optional<double> degreesOfText(std::string_view text, bool is_latitude) {
+  if (text.size() > 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
+  const std::optional<double> degrees = parseCoordinate(std::string(text), is_latitude);
+  return degrees ? std::optional(rounded(*degrees)) : std::nullopt;
+}
+
 class PointReader {
  public:
   PointReader(const std::string& file, const PointColumns& columns) : file_(file), columns_(columns) {}
@@ -102,8 +114,10 @@ class PointReader {
       readPosition(row.cells[columns_.position], point);
     } else {
       point.latitude_deg = directed(degreesIn(row.cells[columns_.latitude], true), columns_.north_or_south);
-      point.longitude_deg =
-          wrapLongitude_deg(directed(degreesIn(row.cells[columns_.longitude], false), columns_.east_or_west));
+      const double east_deg =
+          directed(degreesIn(row.cells[columns_.longitude], false), columns_.east_or_west);
+      point.longitude_deg = east_deg <= PositionLimits::kLongitude_deg ? wrapLongitude_deg(east_deg)
+                                                                       : rounded(wrapLongitude_deg(east_deg));
     }
     if (columns_.name != PointColumns::kNone) point.name = std::string(row.cells[columns_.name].text);
     if (columns_.height != PointColumns::kNone) point.height = heightIn(row.cells[columns_.height]);
@@ -118,7 +132,7 @@ class PointReader {
   double degreesIn(const CsvCell& cell, bool is_latitude) const {
     const char* const what = is_latitude ? "latitude" : "longitude";
     std::optional<double> value = document::numberOrCommaIn(cell.text);
-    if (!value) value = parseCoordinate(std::string(cell.text), is_latitude);
+    if (!value) value = degreesOfText(cell.text, is_latitude);
     if (!value) {
       fail(cell.column, fmt::format("the {0} is '{1}', not a number of degrees or such as {2}", what,
                                     cell.text, is_latitude ? "36°30'12\"N" : "84°12'00\"W"));

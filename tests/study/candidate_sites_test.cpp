@@ -101,8 +101,8 @@ TEST(CandidateSites, CoordinatesOfATableMayBeTexts) {
   for (const char* text :
        {"name;lat;lon\nhill;36°30'36\"N;84°12'00\"W\n", "name,lat,lon\nhill,36 30 36,-84 12 0\n",
         "name,lat,lon\nhill,N36 30.6,W84 12.0\n", "name,lat,lon\nhill,36.51,275.8\n",
-        "name,lat,NS,lon,EW\nhill,36.51,N,84.2,W\n", "sep=;\nname;lat;lon\nhill;36,51;-84,2\n",
-        "name,lat,lon\nhill,36 30.6 N,84 12.0 W\n",
+        "name,lat,lon\nhill,\"36°30'36\"N\",\"84°12'00\"W\"\n", "name,lat,NS,lon,EW\nhill,36.51,N,84.2,W\n",
+        "sep=;\nname;lat;lon\nhill;36,51;-84,2\n", "name,lat,lon\nhill,36 30.6 N,84 12.0 W\n",
         "name,Latitude (DMS),Longitude (DMS)\nhill,36d30'36\"N,84d12'0\"W\n",
         "name,lat,lon\nhill,\"36°30'36\"\"N\",\"84°12'00\"\"W\"\n", "name,mgrs\nhill,16S GF 50751 44164\n",
         "name,MGRS\nhill,16SGF5075144164\n", "name;utm\nhill;16n 750751 4044164\n",
