@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "base/text/count_text.h"
-#include "base/text/utf8.h"
 #include "emscape/base/error.h"
 #include "recording/acmi/acmi_reader.h"
 #include "recording/common/samples.h"
@@ -174,21 +173,10 @@ std::string headOf(ByteSource& source) {
   return head;
 }
 
-/// True if the begin of a file is UTF-8, the last character perhaps cut.
-bool isUtf8(std::string_view head) {
-  constexpr std::size_t kLongestSequence = 4;
-  while (!head.empty()) {
-    const std::size_t length = utf8SequenceLength(head);
-    if (length == 0) return head.size() < kLongestSequence;
-    head.remove_prefix(length);
-  }
-  return true;
-}
-
 /// Refuses a text whose letters are not in UTF-8: names of its columns could not be told.
 void refuseOtherTexts(std::string_view head) {
   const bool is_text = std::none_of(head.begin(), head.end(), [](unsigned char c) { return c < 0x09; });
-  if (!is_text || isUtf8(head)) return;
+  if (!is_text || isUtf8(head, true)) return;
   throw Error(
       ErrorCode::bad_input,
       "no recording of a known format, and a text that is not in UTF-8 (but Latin-1, perhaps); convert "
@@ -253,12 +241,23 @@ void dropWithoutPosition(Recording& recording) {
       fmt::format("{} without a position, left out", countText(dropped, "object", "objects")));
 }
 
+/// Says how letters are read in a text that states no encoding and is not in UTF-8.
+void tellEncoding(const std::string& head, Format format, Recording& recording) {
+  const bool has_names = format == Format::table || format == Format::gpx || format == Format::kml;
+  if (!has_names || isUtf8(head, true) || !declaredEncoding(head).empty()) return;
+  recording.tally.notes.emplace_back(
+      "not in UTF-8: letters of names are taken as Latin-1; 'iconv -f ENCODING -t UTF-8 OLD > NEW' converts "
+      "a text in another encoding, such as WINDOWS-1251");
+}
+
 Recording readFrom(const Opener& open, const std::string& file, const ReadOptions& options,
                    const ProgressSink& progress) {
   Recording recording;
   try {
-    const Format format = formatOf(headOf(*unzipped(open, file)), options);
+    const std::string head = headOf(*unzipped(open, file));
+    const Format format = formatOf(head, options);
     recording = readFormat(format, unzipped(open, file), file, options, progress);
+    tellEncoding(head, format, recording);
   } catch (const Error& error) {
     if (!error.location().file.empty()) throw;
     throw Error(error.code(), {file, 0, 0}, error.message());

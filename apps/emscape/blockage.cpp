@@ -104,6 +104,8 @@ int blockage(BlockageCommand command, const GlobalOptions& global) {
       render::writePng(file, study::drawBlockage(blockage, command.width));
     } else if (ending == ".csv") {
       study::writeBlockageCsv(blockage, file);
+    } else if (ending == ".nc") {
+      study::writeBlockageNetcdf(blockage, file);
     } else {
       const study::BlockageMap made = study::mapOf(blockage);
       study::writeGeoTiff(file, made.grid, made.map,
@@ -132,7 +134,7 @@ void addBlockage(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->footer(R"(
 The part of the beam's cross section, a circle of the width between the half-power points, that is below the highest ground of
 each gate (Bech et al. 2003), and the largest part up to there. Rays are straight over the effective earth of the scenario's
-k_factor; diffraction is left out. In the picture and the GeoTIFF the part up to there; both in the CSV.
+k_factor; diffraction is left out. In the picture and the GeoTIFF the part up to there; both in the CSV and, with the gates' positions, in netCDF.
 
 Examples:
   emscape blockage scenarios/jacksboro.yaml --emitter "search radar" -o blockage.png -o blockage.csv
@@ -166,12 +168,12 @@ Exit status: 0; 2 for an unknown emitter or an antenna without a beam; 3 without
       ->check(CLI::Range(BlockageRequest::kMinAzimuths, BlockageRequest::kMaxAzimuths));
   command
       ->add_option("-o,--output", options->outputs,
-                   "File to write, .png, .csv or .tif; may be given several times")
+                   "File to write, .png, .csv, .tif or .nc; may be given several times")
       ->allow_extra_args(false)
       ->check([](const std::string& file) {
         const std::string ending = std::filesystem::path(file).extension();
-        const bool is_known = ending == ".png" || ending == ".csv" || ending == ".tif";
-        return is_known ? "" : "'" + file + "': files are written as .png, .csv or .tif";
+        const bool is_known = ending == ".png" || ending == ".csv" || ending == ".tif" || ending == ".nc";
+        return is_known ? "" : "'" + file + "': files are written as .png, .csv, .tif or .nc";
       });
   command->add_option("--width", options->width, "Width of the picture in pixels")
       ->check(CLI::Range(400, 8000));

@@ -356,6 +356,11 @@ Description describe(const std::string& name) {
     case playback::InputKind::antenna:
       break;
   }
+  if (scenario::isTableOfAir(file))
+    throw Error(ErrorCode::bad_input, {file, 1, 1},
+                fmt::format("a table of the air has other columns: {}; temperatures in kelvin, heights in "
+                            "metres, humidity in percent",
+                            scenario::refractivityColumns()));
   auto antenna = std::make_shared<report::AntennaReport>(report::readAntennaReport(file));
   for (const std::string& warning : antenna->warnings) logWarning(warning);
   return {report::antennaJson(*antenna), nullptr, antenna};
@@ -403,7 +408,7 @@ Scenarios: .yaml .yml .json. Volumes: .vdb .nvdb .vti .raw .dat; fields on tetra
 .pvd or a folder (its first step is described).
 Elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt .asc .bil .flt .dem .img .nc .xyz .gpkg, also in .zip and .gz; `terrain` describes several
 files and folders. Antennas: .msi .pln .adf .ant .pattern .az .el .csv.
-Refractivity: .csv with a column height_msl_m; soundings of IGRA 2 and the University of Wyoming (any ending; the last is described). Each duct is given with
+Refractivity: .csv with a column height_msl_m; soundings of IGRA 2, the University of Wyoming and the Storm Prediction Center (any ending; the last is described). Each duct is given with
 its heights, its strength, the largest trapped angle, the number of modes at 1, 3 and 10 GHz (of a scenario, at the frequencies of
 its emitters), and the frequency from which it traps.
 

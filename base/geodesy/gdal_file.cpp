@@ -75,6 +75,17 @@ std::string viewIn(GDALDatasetH dataset) {
   return name;
 }
 
+/// Null if the dataset has a view.
+Dataset withoutViews(Dataset dataset) {
+  if (dataset == nullptr) return dataset;
+  if (const std::string view = viewIn(dataset.get()); !view.empty()) {
+    CPLError(CE_Failure, CPLE_OpenFailed,
+             "layer '%s' is a view (SQL), which is not read; export it as a table", view.c_str());
+    return nullptr;
+  }
+  return dataset;
+}
+
 }  // namespace
 
 Dataset openFile(const fs::path& file, unsigned flags, const char* const* drivers, const char* const* options,
@@ -89,20 +100,15 @@ Dataset openFile(const fs::path& file, unsigned flags, const char* const* driver
     return nullptr;
   }
   silenceHdf5();
-  Dataset dataset(GDALOpenEx(localName(file).c_str(), flags | GDAL_OF_READONLY, drivers, options, siblings));
-  if (dataset == nullptr) return dataset;
-  if (const std::string view = viewIn(dataset.get()); !view.empty()) {
-    CPLError(CE_Failure, CPLE_OpenFailed,
-             "layer '%s' is a view (SQL), which is not read; export it as a table", view.c_str());
-    return nullptr;
-  }
-  return dataset;
+  return withoutViews(
+      Dataset(GDALOpenEx(localName(file).c_str(), flags | GDAL_OF_READONLY, drivers, options, siblings)));
 }
 
 Dataset openInMemory(const std::string& name, unsigned flags, const char* const* drivers,
-                     const char* const* siblings) {
+                     const char* const* siblings, const char* const* options) {
   silenceHdf5();
-  return Dataset(GDALOpenEx(name.c_str(), flags | GDAL_OF_READONLY, drivers, nullptr, siblings));
+  return withoutViews(
+      Dataset(GDALOpenEx(name.c_str(), flags | GDAL_OF_READONLY, drivers, options, siblings)));
 }
 
 }  // namespace emscape::gdal

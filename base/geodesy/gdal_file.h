@@ -30,7 +30,8 @@ Dataset openFile(const std::filesystem::path& file, unsigned flags, const char* 
 
 /// Opens a file of GDAL's memory, which the caller has made there.
 /// @param name  /vsimem/...
+/// @return as openFile()
 Dataset openInMemory(const std::string& name, unsigned flags, const char* const* drivers,
-                     const char* const* siblings);
+                     const char* const* siblings, const char* const* options = nullptr);
 
 }  // namespace emscape::gdal

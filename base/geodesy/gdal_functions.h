@@ -41,7 +41,7 @@ const LoadedLibrary& library();
   F(GDALDimensionGetSize) F(GDALDimensionRelease) F(GDALExtendedDataTypeCreate) \
   F(GDALExtendedDataTypeCreateString) F(GDALExtendedDataTypeRelease) F(GDALGetBlockSize) F(GDALGetColorEntryAsRGB) F(GDALGetColorEntryCount) \
   F(GDALGetDataTypeName) F(GDALGetDataTypeSizeBytes) F(GDALGetDatasetDriver) F(GDALGetDriverByName) F(GDALGetDriverShortName) \
-  F(GDALGetFileList) F(GDALGetGeoTransform) F(GDALGetMaskBand) F(GDALGetMaskFlags) F(GDALGetMetadata) F(GDALGetMetadataItem) \
+  F(GDALGetFileList) F(GDALGetGCPCount) F(GDALGetGeoTransform) F(GDALGetMaskBand) F(GDALGetMaskFlags) F(GDALGetMetadata) F(GDALGetDescription) F(GDALGetMetadataItem) \
   F(GDALGetRasterBand) F(GDALGetRasterColorTable) F(GDALGetRasterCount) F(GDALGetRasterDataType) F(GDALGetRasterNoDataValue) \
   F(GDALGetColorInterpretationName) F(GDALGetRasterColorInterpretation) F(GDALGetRasterOffset) \
   F(GDALGetRasterScale) F(GDALGetRasterUnitType) F(GDALGetRasterXSize) \
@@ -55,15 +55,15 @@ const LoadedLibrary& library();
   F(GDALSetMetadataItem) F(GDALSetProjection) F(GDALSetRasterCategoryNames) F(GDALSetRasterColorTable) \
   F(GDALSetRasterNoDataValue) F(GDALSetRasterUnitType) F(GDALWarp) F(GDALWarpAppOptionsFree) \
   F(GDALWarpAppOptionsNew) F(OCTDestroyCoordinateTransformation) F(OCTNewCoordinateTransformation) \
-  F(OCTTransform) F(OCTTransformEx) F(OGR_FD_GetFieldDefn) F(OGR_FD_GetFieldIndex) \
+  F(OCTTransform) F(OCTTransformEx) F(OGR_FD_GetFieldCount) F(OGR_FD_GetFieldDefn) F(OGR_FD_GetFieldIndex) \
   F(OGR_FD_GetGeomFieldCount) F(OGR_FD_GetGeomFieldDefn) F(OGR_F_Create) F(OGR_F_Destroy) F(OGR_F_GetFID) \
   F(OGR_F_GetFieldAsDouble) F(OGR_F_GetFieldAsInteger) F(OGR_F_GetFieldAsString) F(OGR_F_GetFieldIndex) \
-  F(OGR_F_GetGeometryRef) F(OGR_F_SetFieldDouble) F(OGR_F_SetFieldInteger) F(OGR_F_SetFieldString) \
+  F(OGR_F_GetGeometryRef) F(OGR_F_IsFieldSetAndNotNull) F(OGR_F_SetFieldDouble) F(OGR_F_SetFieldInteger) F(OGR_F_SetFieldString) \
   F(OGR_F_SetGeometry) F(OGR_F_StealGeometry) F(OGR_Fld_Create) F(OGR_Fld_Destroy) F(OGR_Fld_GetNameRef) \
   F(OGR_GFld_GetNameRef) F(OGR_G_AddGeometry) F(OGR_G_AddGeometryDirectly) F(OGR_G_AddPointZM) F(OGR_G_CreateGeometry) \
   F(OGR_G_DestroyGeometry) F(OGR_G_GetGeometryCount) F(OGR_G_GetGeometryRef) F(OGR_G_GetGeometryType) \
-  F(OGR_G_GetLinearGeometry) F(OGR_G_GetPointCount) F(OGR_G_GetPoints) F(OGR_G_GetX) F(OGR_G_GetY) \
-  F(OGR_G_IsEmpty) F(OGR_G_IsValid) F(OGR_G_MakeValid) F(OGR_G_SetPoint_2D) F(OGR_GT_Flatten) F(OGR_L_CreateFeature) F(OGR_L_CreateField) F(OGR_L_GetLayerDefn) \
+  F(OGR_G_GetLinearGeometry) F(OGR_G_GetPointCount) F(OGR_G_GetPoints) F(OGR_G_GetX) F(OGR_G_GetY) F(OGR_G_GetZ) \
+  F(OGR_G_Intersection) F(OGR_G_IsEmpty) F(OGR_G_IsValid) F(OGR_G_MakeValid) F(OGR_G_SetPoint_2D) F(OGR_GT_Flatten) F(OGR_L_CreateFeature) F(OGR_L_CreateField) F(OGR_L_GetLayerDefn) F(OGR_L_GetName) \
   F(OGR_L_GetNextFeature) F(OGR_L_GetSpatialRef) F(OGR_L_ResetReading) F(OSRClone) F(OSRCloneGeogCS) \
   F(OSRDestroySpatialReference) F(OSRExportToWkt) F(OSRExportToWktEx) F(OSRGetAngularUnits) F(OSRGetAxis) \
   F(OSRGetAttrValue) F(OSRGetAuthorityCode) F(OSRGetAuthorityName) F(OSRGetAxesCount) \

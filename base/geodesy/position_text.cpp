@@ -218,8 +218,10 @@ std::optional<double> parseCoordinate(const std::string& text, bool is_latitude)
       ++colons;
     }
   }
-  // Two numbers are a position, and GeographicLib would add signed ones.
-  if (colons == 1 || joined.find_first_of("+-", 1) != std::string::npos) return std::nullopt;
+  // Two numbers without a direction are a position, and GeographicLib would add signed ones.
+  const bool has_direction = !joined.empty() && (isHemisphere(joined.front()) || isHemisphere(joined.back()));
+  if ((colons == 1 && !has_direction) || joined.find_first_of("+-", 1) != std::string::npos)
+    return std::nullopt;
   try {
     DMS::flag kind = DMS::NONE;
     const double degrees = DMS::Decode(joined, kind);

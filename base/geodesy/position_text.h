@@ -30,8 +30,8 @@ struct ParsedPosition {
 /// @throws Error (usage) that states the forms
 ParsedPosition parsePosition(const std::string& text);
 
-/// Reads one coordinate: "84.2", "84.2W", "84°12'W", "84 12 0". @return none for another text, and for a
-/// letter of the other coordinate
+/// Reads one coordinate: "84.2", "84.2W", "84°12'W", "84 12.5 W", "84 12 0". @return none for another text,
+/// and for a letter of the other coordinate
 std::optional<double> parseCoordinate(const std::string& text, bool is_latitude);
 
 }  // namespace emscape

@@ -164,8 +164,39 @@ bool drawsSmoothEarth(const LoadedScenario& scene, const volume::Grid& grid) {
   return z_m > lower.z - kMaxBelow * (upper.z - lower.z) && z_m < upper.z;
 }
 
-void drape(render::HeightField& ground, const std::string& name, const scenario::Terrain* terrain,
-           const volume::Grid& grid) {
+std::vector<render::Category> groundClassesOf(const scenario::LandCover& cover,
+                                              const std::vector<GeodeticPosition>& positions) {
+  struct Found {
+    const scenario::CoverClass* of;  // classes of one name are one
+    long long count;
+  };
+  std::vector<long long> counts(cover.classes().size());
+  for (const GeodeticPosition& at : positions) {
+    const int found = cover.classAt(at.latitude_deg, at.longitude_deg);
+    if (found >= 0) ++counts[static_cast<std::size_t>(found)];
+  }
+  std::vector<Found> all;
+  for (std::size_t c = 0; c < counts.size(); ++c) {
+    if (counts[c] == 0) continue;
+    const scenario::CoverClass& of = cover.classes()[c];
+    const auto known =
+        std::find_if(all.begin(), all.end(), [&](const Found& each) { return each.of->name == of.name; });
+    if (known == all.end())
+      all.push_back({&of, counts[c]});
+    else
+      known->count += counts[c];
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Found& a, const Found& b) { return a.count > b.count; });
+  std::vector<render::Category> classes;
+  for (const Found& found : all) {
+    const auto part = [&](int shift) { return static_cast<float>(found.of->color >> shift & 255U) / 255; };
+    classes.push_back({0, found.of->name, render::Rgb{part(0), part(8), part(16)}});
+  }
+  return classes;
+}
+
+std::vector<render::Category> drape(render::HeightField& ground, const std::string& name,
+                                    const scenario::Terrain* terrain, const volume::Grid& grid) {
   const GeoFrame frame(grid.frame);
   std::vector<GeodeticPosition> positions;
   positions.reserve(ground.heights_m.size());
@@ -177,6 +208,8 @@ void drape(render::HeightField& ground, const std::string& name, const scenario:
     }
   }
   ground.colors = scenario::drapeColors(name, terrain, positions);
+  if (name != scenario::kLandCoverDrape) return {};
+  return groundClassesOf(*terrain->landCover(), positions);
 }
 
 }  // namespace emscape::playback

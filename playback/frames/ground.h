@@ -7,7 +7,9 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/playback/frames/inputs.h"
+#include "emscape/render/annotate/legend.h"
 #include "emscape/render/scene/height_field.h"
+#include "emscape/scenario/terrain/land_cover.h"
 #include "emscape/volume/grid.h"
 #include "scenario/map/coast.h"
 
@@ -43,9 +45,14 @@ Ground groundOf(const LoadedScenario& scene, const volume::Grid& grid, const sce
 /// True if the surface of a scene without terrain is drawn: it is not far below the volume.
 bool drawsSmoothEarth(const LoadedScenario& scene, const volume::Grid& grid);
 
+/// The classes of land cover at positions, the most frequent first.
+std::vector<render::Category> groundClassesOf(const scenario::LandCover& cover,
+                                              const std::vector<GeodeticPosition>& positions);
+
 /// Lays a picture on the ground. @throws Error (bad_input) as scenario::drapeColors()
 /// @param terrain  null: none
-void drape(render::HeightField& ground, const std::string& name, const scenario::Terrain* terrain,
-           const volume::Grid& grid);
+/// @return the classes on it, of land cover
+std::vector<render::Category> drape(render::HeightField& ground, const std::string& name,
+                                    const scenario::Terrain* terrain, const volume::Grid& grid);
 
 }  // namespace emscape::playback

@@ -83,9 +83,11 @@ bool Scenery::updateGround(const ViewState& view) {
   drawn->light = is_light;
   if (!is_other && drawn_ && drape_ == view.drape) {
     drawn->colors = drawn_->colors;
-  } else if (is_fine) {
+  } else {
+    ground_classes_.clear();
     try {
-      drape(*drawn, view.drape, scene_ ? scene_->terrain.get() : nullptr, *grid_);
+      if (is_fine)
+        ground_classes_ = drape(*drawn, view.drape, scene_ ? scene_->terrain.get() : nullptr, *grid_);
     } catch (const Error& error) {
       fault_ = error;
     }
@@ -142,6 +144,7 @@ void Scenery::annotate(render::Annotations& annotations, const ViewState& view,
   annotations.units = view.units;
   annotations.ground_lines = lines_;
   annotations.ground_points = points_;
+  annotations.ground_classes = drawn_ ? ground_classes_ : std::vector<render::Category>{};
   annotations.origin_latitude.clear();
   annotations.origin_longitude.clear();
   if (!grid_ || !grid_->georeferenced) return;

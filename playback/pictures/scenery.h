@@ -44,6 +44,7 @@ class Scenery {
   bool is_fine_ = false;
   bool is_sea_by_heights_ = false;
   std::string drape_;
+  std::vector<render::Category> ground_classes_;  ///< of the drape
   std::shared_ptr<const render::HeightField> drawn_;
 
   std::vector<std::string> place_files_;

@@ -1,7 +1,11 @@
 #include "recording/common/text.h"
 
+#include <iconv.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 
@@ -33,6 +37,49 @@ std::optional<double> numberIn(std::string_view text) {
 std::string lowerCase(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
+}
+
+bool isUtf8(std::string_view text, bool is_beginning) {
+  constexpr std::size_t kLongestSequence = 4;
+  while (!text.empty()) {
+    const std::size_t length = utf8SequenceLength(text);
+    if (length == 0) return is_beginning && text.size() < kLongestSequence;
+    text.remove_prefix(length);
+  }
+  return true;
+}
+
+std::string declaredEncoding(std::string_view text) {
+  constexpr std::string_view kEncoding = "encoding=";
+  text = text.substr(0, text.find("?>"));
+  const std::size_t at = text.find(kEncoding);
+  if (text.find("<?xml") == std::string_view::npos || at == std::string_view::npos) return "";
+  const std::size_t begin = at + kEncoding.size() + 1;
+  if (begin >= text.size()) return "";
+  return std::string(text.substr(begin, text.find_first_of("\"'", begin) - begin));
+}
+
+std::string utf8Of(std::string_view text, const std::string& encoding) {
+  const iconv_t converter = iconv_open("UTF-8", encoding.empty() ? "LATIN1" : encoding.c_str());
+  if (converter == reinterpret_cast<iconv_t>(-1))
+    return encoding == "LATIN1" ? std::string(text) : utf8Of(text, "LATIN1");
+  std::string converted;
+  std::string input(text);
+  char* from = input.data();
+  std::size_t left = input.size();
+  std::array<char, 4096> part{};
+  while (left > 0) {
+    char* to = part.data();
+    std::size_t room = part.size();
+    const bool failed = iconv(converter, &from, &left, &to, &room) == static_cast<std::size_t>(-1);
+    converted.append(part.data(), part.size() - room);
+    if (!failed || errno == E2BIG) continue;
+    converted += "\xEF\xBF\xBD";  // a byte without a meaning, or a character that is cut
+    ++from;
+    --left;
+  }
+  iconv_close(converter);
+  return converted;
 }
 
 std::string printableText(std::string_view text) {

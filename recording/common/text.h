@@ -17,6 +17,14 @@ std::optional<double> numberIn(std::string_view text);
 /// ASCII letters in lower case.
 std::string lowerCase(std::string text);
 
+/// @param is_beginning  the last character may be cut
+bool isUtf8(std::string_view text, bool is_beginning = false);
+/// The encoding that an XML file states at its beginning; empty: none.
+std::string declaredEncoding(std::string_view text);
+/// A text in another encoding as UTF-8; what has no meaning in it becomes U+FFFD. An encoding that the system
+/// does not know, and none, are taken as Latin-1.
+std::string utf8Of(std::string_view text, const std::string& encoding);
+
 /// A text that can be a name: control characters are blanks, at most 150 bytes.
 std::string printableText(std::string_view text);
 

@@ -7,6 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "recording/common/byte_source.h"
+#include "recording/common/text.h"
 
 namespace emscape::interop {
 
@@ -17,9 +18,10 @@ struct XmlFault {
   std::string message;
 };
 
-std::optional<XmlFault> faultOf(std::string_view text, pugi::xml_document& document) {
+std::optional<XmlFault> faultOf(std::string_view text, pugi::xml_document& document,
+                                pugi::xml_encoding encoding = pugi::encoding_auto) {
   const pugi::xml_parse_result result =
-      document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_auto);
+      document.load_buffer(text.data(), text.size(), pugi::parse_default, encoding);
   if (result) return std::nullopt;
   const auto at = std::min<std::size_t>(static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)),
                                         text.size());
@@ -35,8 +37,11 @@ std::string parseXml(std::string_view text, pugi::xml_document& document) {
 }
 
 std::string loadXml(ByteSource& source, const std::string& name, pugi::xml_document& document) {
-  const std::string text = readAll(source, name, kMaxXmlBytes);
-  const auto fault = faultOf(text, document);
+  std::string text = readAll(source, name, kMaxXmlBytes);
+  // pugixml knows Unicode and Latin-1. Zero bytes are those of UTF-16 and UTF-32.
+  const bool is_other = !isUtf8(text) && text.find('\0') == std::string::npos;
+  if (is_other) text = utf8Of(text, declaredEncoding(text.substr(0, 200)));
+  const auto fault = faultOf(text, document, is_other ? pugi::encoding_utf8 : pugi::encoding_auto);
   if (!fault) return source.failure();
   // Of a file that was cut, the fault is in its last element.
   constexpr std::size_t kLastElement = 400;

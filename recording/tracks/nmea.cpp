@@ -108,6 +108,7 @@ class NmeaReader {
       if (!begin(field(1))) return;
       place(field(2), field(3), field(4), field(5));
       fix_->height_msl_m = numberIn(field(9));
+      if (kind == "GGA" && fix_->height_msl_m) takeUnit(field(10));
     } else if (kind == "ZDA") {
       const auto day = numberIn(field(2)), month = numberIn(field(3)), year = numberIn(field(4));
       if (begin(field(1)) && day && month && year) setDate(*year, *month, *day);
@@ -136,8 +137,25 @@ class NmeaReader {
     const auto latitude_deg = angleOf(latitude, north), longitude_deg = angleOf(longitude, east);
     if (!latitude_deg || !longitude_deg)
       return countBad(recorder_.tally(), location_, "its position is not ddmm.mm,N,dddmm.mm,E");
+    constexpr double kApart_deg = 0.001;
+    if (fix_->latitude_deg && (std::abs(*fix_->latitude_deg - *latitude_deg) > kApart_deg ||
+                               std::abs(*fix_->longitude_deg - *longitude_deg) > kApart_deg))
+      recorder_.assume(
+          "sentences of one time at two places, as of two receivers in one log: the last is used; grep "
+          "'^$GP' "
+          "makes a log of one talker");
     fix_->latitude_deg = latitude_deg;
     fix_->longitude_deg = longitude_deg;
+  }
+
+  /// Of a height: M by the standard; some receivers write feet.
+  void takeUnit(std::string_view unit) {
+    constexpr double kMetresPerFoot = 0.3048;
+    if (unit == "F" || unit == "f") {
+      *fix_->height_msl_m *= kMetresPerFoot;
+    } else if (!unit.empty() && unit != "M" && unit != "m") {
+      recorder_.assume(fmt::format("height in '{}': taken as metres", printableText(unit.substr(0, 8))));
+    }
   }
 
   void takeDate(std::string_view text) {

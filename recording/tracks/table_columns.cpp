@@ -13,6 +13,58 @@
 namespace emscape::interop {
 namespace {
 
+bool endsWith(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+}  // namespace
+
+std::optional<double> factorOfUnit(const std::string& told) {
+  std::string unit = lowerCase(told);
+  static const std::map<std::string, double> factors{{"", 1},
+                                                     {"m", 1},
+                                                     {"metres", 1},
+                                                     {"meters", 1},
+                                                     {"metre", 1},
+                                                     {"meter", 1},
+                                                     {"deg", 1},
+                                                     {"degrees", 1},
+                                                     {"degree", 1},
+                                                     {"\xC2\xB0", 1},
+                                                     {"s", 1},
+                                                     {"sec", 1},
+                                                     {"seconds", 1},
+                                                     {"utc", 1},
+                                                     {"ft", kMetresPerFoot},
+                                                     {"feet", kMetresPerFoot},
+                                                     {"fl", 100 * kMetresPerFoot},
+                                                     {"km", 1000},
+                                                     {"cm", 0.01},
+                                                     {"mm", 0.001},
+                                                     {"rad", 180 / 3.14159265358979323846},
+                                                     {"min", 60},
+                                                     {"h", 3600},
+                                                     {"d", kSecondsPerDay},
+                                                     {"days", kSecondsPerDay},
+                                                     {"ms", 1e-3},
+                                                     {"milliseconds", 1e-3},
+                                                     {"us", 1e-6},
+                                                     {"\xC2\xB5s", 1e-6},
+                                                     {"microsecond", 1e-6},
+                                                     {"microseconds", 1e-6},
+                                                     {"ns", 1e-9},
+                                                     {"nanosecond", 1e-9},
+                                                     {"nanoseconds", 1e-9},
+                                                     {"millisecond", 1e-3}};
+  for (const std::string_view reference : {" msl", " amsl", " asl", " baro", " wgs84", " gps"}) {
+    if (endsWith(unit, reference)) unit.resize(unit.size() - reference.size());
+  }
+  const auto found = factors.find(unit);
+  return found == factors.end() ? std::nullopt : std::optional(found->second);
+}
+
+namespace {
+
 /// What a column may be called, in lower case, without a unit, blanks and underscores; the first that a
 /// header has is taken.
 struct ColumnNames {
@@ -25,8 +77,8 @@ const std::vector<ColumnNames>& columnNames() {
       {Column::time,
        "time",
        {"timestamp", "datetime", "basedatetime", "utc", "utctime", "timeutc", "gpstime", "unixtime",
-        "updatetime", "time", "t", "seconds", "flytime"}},
-      {Column::date, "date", {"date", "utcdate", "dateutc"}},
+        "updatetime", "time", "t", "seconds", "flytime", "lcltime"}},
+      {Column::date, "date", {"date", "utcdate", "dateutc", "lcldate"}},
       {Column::latitude, "latitude", {"latitude", "lat"}},
       {Column::longitude, "longitude", {"longitude", "lon", "lng", "long"}},
       {Column::position, "position", {"position", "latlon", "latlng", "coordinates"}},
@@ -39,12 +91,9 @@ const std::vector<ColumnNames>& columnNames() {
       {Column::pitch, "pitch", {"pitch"}},
       {Column::roll, "roll", {"roll"}},
       {Column::id, "id", {"icao24", "icao", "hex", "mmsi", "id", "platform", "object", "name", "callsign"}},
+      {Column::utc_offset, "utc_offset", {"utcofst", "utcoffset"}},
   };
   return names;
-}
-
-bool endsWith(const std::string& text, std::string_view end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 /// What a name says of a height: a word for it, and one for its reference at most. Another word (above
@@ -83,50 +132,6 @@ std::optional<HeightName> heightNameOf(std::string name) {
 bool isHeight(Column column) {
   return column == Column::height_msl || column == Column::height_ellipsoid ||
          column == Column::height_pressure;
-}
-
-/// Factor to metres, degrees or seconds.
-std::optional<double> factorOf(std::string unit) {
-  static const std::map<std::string, double> factors{{"", 1},
-                                                     {"m", 1},
-                                                     {"metres", 1},
-                                                     {"meters", 1},
-                                                     {"metre", 1},
-                                                     {"meter", 1},
-                                                     {"deg", 1},
-                                                     {"degrees", 1},
-                                                     {"degree", 1},
-                                                     {"\xC2\xB0", 1},
-                                                     {"s", 1},
-                                                     {"sec", 1},
-                                                     {"seconds", 1},
-                                                     {"utc", 1},
-                                                     {"ft", kMetresPerFoot},
-                                                     {"feet", kMetresPerFoot},
-                                                     {"fl", 100 * kMetresPerFoot},
-                                                     {"km", 1000},
-                                                     {"cm", 0.01},
-                                                     {"mm", 0.001},
-                                                     {"rad", 180 / 3.14159265358979323846},
-                                                     {"min", 60},
-                                                     {"h", 3600},
-                                                     {"d", kSecondsPerDay},
-                                                     {"days", kSecondsPerDay},
-                                                     {"ms", 1e-3},
-                                                     {"milliseconds", 1e-3},
-                                                     {"us", 1e-6},
-                                                     {"\xC2\xB5s", 1e-6},
-                                                     {"microsecond", 1e-6},
-                                                     {"microseconds", 1e-6},
-                                                     {"ns", 1e-9},
-                                                     {"nanosecond", 1e-9},
-                                                     {"nanoseconds", 1e-9},
-                                                     {"millisecond", 1e-3}};
-  for (const std::string_view reference : {" msl", " amsl", " asl"}) {
-    if (endsWith(unit, reference)) unit.resize(unit.size() - reference.size());
-  }
-  const auto found = factors.find(unit);
-  return found == factors.end() ? std::nullopt : std::optional(found->second);
 }
 
 /// A name without its unit and what stands before a dot: "Alt (ft)", "altitude_ft", "alt[m]", "OSD.height
@@ -211,16 +216,23 @@ Columns columnsByName(const std::vector<std::string>& header) {
   for (const ColumnNames& known : columnNames()) {
     for (const std::string& name : known.names) {
       for (std::size_t i = 0; i < told.size() && columns.count(known.column) == 0; ++i) {
-        const auto factor = factorOf(told[i].second);
+        const auto factor = factorOfUnit(told[i].second);
         if (told[i].first == name && factor) columns[known.column] = {i, *factor, !told[i].second.empty()};
       }
     }
+  }
+  // Local times without their offset are not known.
+  const auto is_local = [&](Column column) {
+    return columns.count(column) != 0 && told[columns[column].index].first.rfind("lcl", 0) == 0;
+  };
+  for (const Column column : {Column::time, Column::date}) {
+    if (columns.count(Column::utc_offset) == 0 && is_local(column)) columns.erase(column);
   }
   // Of several heights of a kind one that names its reference comes first.
   for (const bool has_reference : {true, false}) {
     for (std::size_t i = 0; i < told.size(); ++i) {
       const auto height = heightNameOf(told[i].first);
-      const auto factor = factorOf(told[i].second);
+      const auto factor = factorOfUnit(told[i].second);
       if (height && factor && height->has_reference == has_reference)
         columns.try_emplace(height->column, TableColumn{i, *factor, !told[i].second.empty()});
     }
@@ -283,11 +295,14 @@ Columns columnsByMap(const std::vector<std::string>& header, const std::string& 
       column.day_of_1970 = *day;
       continue;
     }
+    const std::string unit_in_name = nameAndUnit(name).second;  // "Alt (ft)"
+    if (unit.empty() && unit_in_name != "utc" && factorOfUnit(unit_in_name)) unit = unit_in_name;
     if (unit == "gps" && known->column == Column::time) {
       column.begin_s = kGpsBegin_s;
       continue;
     }
-    const auto factor = factorOf(unit);
+    column.has_unit = !unit.empty();
+    const auto factor = factorOfUnit(unit);
     if (!factor) {
       throw Error(
           ErrorCode::usage,

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +28,8 @@ enum class Column {
   heading,
   pitch,
   roll,
-  id
+  id,
+  utc_offset  ///< of local times: "-04:00"
 };
 
 /// Name of a column's meaning in --columns.
@@ -47,6 +49,9 @@ using Columns = std::map<Column, TableColumn>;
 std::vector<std::string> cellsOf(std::string_view line, char separator);
 /// The separator of a header line: comma, semicolon or tab.
 char separatorOf(std::string_view line);
+
+/// Factor to metres, degrees or seconds of a unit as columns name it; none: it is not known.
+std::optional<double> factorOfUnit(const std::string& unit);
 
 /// The columns of a header by common names, among them those of the OpenSky network, Flightradar24, of AIS
 /// archives and of logs of drones.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "base/geodesy/position_text.h"
@@ -13,69 +12,12 @@
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
 #include "recording/common/track_recorder.h"
+#include "recording/tracks/table_cells.h"
 #include "recording/tracks/table_columns.h"
 #include "recording/tracks/track_formats.h"
 
 namespace emscape::interop {
 namespace {
-
-/// Above the first of these numbers a time is since 1970; the others tell in which unit.
-constexpr double kUnixTime_s = 1e8, kUnixTime_ms = 1e11, kUnixTime_us = 1e14, kUnixTime_ns = 1e17;
-
-/// A time since 1970 in seconds.
-double secondsOf(double time) {
-  return time > kUnixTime_ns   ? time / 1e9
-         : time > kUnixTime_us ? time / 1e6
-         : time > kUnixTime_ms ? time / 1000
-                               : time;
-}
-
-/// A date and time in digits alone, YYYYMMDDhhmmss. As a number it would be one of the 26th century.
-bool isCompactDate(std::string_view text) {
-  constexpr std::size_t kDigits = 14;
-  return text.size() >= kDigits && (text.substr(0, 2) == "19" || text.substr(0, 2) == "20") &&
-         text.find_first_not_of("0123456789") >= kDigits && (text.size() == kDigits || text[kDigits] == '.');
-}
-
-/// DDMM.mmmm in degrees.
-double degreesOf(double degrees_minutes) {
-  const double minutes = std::fmod(degrees_minutes, 100);
-  return (degrees_minutes - minutes) / 100 + minutes / 60;
-}
-
-/// True for a number that stands for none: nines, as -9999 or 9999999, and -32768.
-bool isFill(double number) {
-  constexpr double kLongestNines = 1e9, kHighest_m = 1e5;
-  for (double nines = 9999; nines < kLongestNines; nines = 10 * nines + 9) {
-    if (number == -nines || (number == nines && nines >= kHighest_m - 1)) return true;
-  }
-  return number == -32768;
-}
-
-/// A column without a role, as its rows show it.
-struct UnusedColumn {
-  std::size_t index = 0;
-  std::string last;             ///< cell of the row before
-  std::set<std::string> texts;  ///< the first kMaxTexts
-  long long rows = 0;
-  long long turns = 0;  ///< rows whose cell is another one than that before
-  bool has_text = false;
-
-  static constexpr std::size_t kMaxTexts = 1000;
-
-  void take(const std::string& cell) {
-    ++rows;
-    if (cell == last) return;
-    ++turns;
-    last = cell;
-    has_text = has_text || (!cell.empty() && !numberIn(cell));
-    if (texts.size() < kMaxTexts) texts.insert(cell);
-  }
-  /// True if cells repeat as the names of several objects do.
-  bool mayBeNames() const {
-    return texts.size() > 1 && texts.size() < kMaxTexts && 2 * static_cast<long long>(texts.size()) <= rows;
-  }
-};
 
 /// Coordinates from here on are integers, as flight controllers log them.
 constexpr double kScaledFrom = 1e6;
@@ -114,19 +56,6 @@ bool isComment(std::string_view line, const ReadOptions& options) {
   }
 }
 
-/// An angle whose parts are apart, "52 06.1 N", as one word, "52:06.1N".
-std::string joinedAngle(const std::string& text) {
-  std::string joined;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool is_blank = text[i] == ' ';
-    const bool is_before_digit = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
-    const bool is_after_digit = !joined.empty() && joined.back() >= '0' && joined.back() <= '9';
-    if (!is_blank) joined += text[i];
-    if (is_blank && is_before_digit && is_after_digit) joined += ':';
-  }
-  return joined;
-}
-
 class TableReader {
  public:
   TableReader(const std::string& name, const ReadOptions& options)
@@ -138,6 +67,7 @@ class TableReader {
   Recording read(LineReader& lines) {
     for (std::string_view line; lines.next(line);) {
       line = lineOf(line);
+      if (columns_.empty() && !line.empty() && line.front() == '#') units_ = headerOf(line);
       if (columns_.empty() ? isComment(line, options_) : line.empty() || line.front() == '#') continue;
       if (columns_.empty() && isBaseStation(line)) {
         columns_ = columnsOfBaseStation();
@@ -148,13 +78,22 @@ class TableReader {
       }
       location_ = fmt::format("line {}", lines.line());
       ++recorder_.tally().records;
-      takeRow(cellsOf(line, separator_));
+      const std::vector<std::string> cells = cellsOf(line, separator_);
+      if (hasSurplus(cells)) {
+        bad(
+            fmt::format("it has {} cells, the header {}; are decimals written with commas, or texts with "
+                        "separators?",
+                        cells.size(), header_.size()));
+      } else {
+        takeRow(cells);
+      }
     }
     if (is_utc_) recorder_.hasUtc();
     recorder_.tellObjectsApartBy(objectsRemedy());
     Recording recording = recorder_.finish();
     recording.has_times_of_day = has_times_of_day_;
     tellUnused(recording.tally);
+    tellLongSteps(recording.tally);
     return recording;
   }
 
@@ -164,6 +103,7 @@ class TableReader {
     header_ = headerOf(line);
     const std::vector<std::string>& header = header_;
     columns_ = columnsOf(header, options_);
+    takeUnitsAbove();
     for (const Column needed : {Column::time, Column::latitude, Column::longitude}) {
       const bool is_in_position = needed != Column::time && columns_.count(Column::position) != 0;
       if (is_in_position || columns_.count(needed) != 0) continue;
@@ -178,6 +118,35 @@ class TableReader {
                                        [i](const auto& column) { return column.second.index == i; });
       if (!is_used && !header[i].empty()) unused_.push_back({i, {}, {}, 0, 0, false});
     }
+  }
+
+  /// Units of heights in a comment above the header that has a cell for each column, as Garmin's avionics
+  /// write it.
+  void takeUnitsAbove() {
+    if (units_.size() != header_.size()) return;
+    for (const Column height : {Column::height_msl, Column::height_ellipsoid, Column::height_pressure}) {
+      const auto found = columns_.find(height);
+      if (found == columns_.end() || found->second.has_unit) continue;
+      const std::string& unit = units_[found->second.index];
+      const auto factor = unit.empty() ? std::nullopt : factorOfUnit(unit);
+      if (!factor) continue;
+      found->second.factor = *factor;
+      found->second.has_unit = true;
+    }
+  }
+
+  /// Whole numbers without a unit that are far apart, in which an object creeps, are no seconds.
+  void tellLongSteps(ReadingTally& tally) const {
+    constexpr double kLongStep_s = 1000, kCreeping_mps = 0.05, kDegree_m = 111e3;
+    const double span_s = last_time_ - first_time_;
+    if (plain_times_ < 3 || span_s < kLongStep_s * static_cast<double>(plain_times_ - 1) || path_deg_ == 0 ||
+        path_deg_ * kDegree_m > kCreeping_mps * span_s)
+      return;
+    const std::string name = header_.empty() ? "" : printableText(header_[columns_.at(Column::time).index]);
+    tally.notes.push_back(
+        fmt::format("times of column '{0}' are taken as seconds; they are {1:.6g} apart on average: if they "
+                    "are in microseconds or milliseconds, columns tell it: time={0}:us or time={0}:ms",
+                    name, span_s / static_cast<double>(plain_times_ - 1)));
   }
 
   std::string nameOf(const UnusedColumn& column) const { return printableText(header_[column.index]); }
@@ -287,6 +256,13 @@ class TableReader {
     return told.is_degrees_minutes ? degreesOf(*number) : *number * told.factor;
   }
 
+  /// True if a row has more cells than the header, but for empty ones at its end.
+  bool hasSurplus(const std::vector<std::string>& cells) const {
+    if (is_base_station_ || header_.empty() || cells.size() <= header_.size()) return false;
+    return std::any_of(cells.begin() + static_cast<std::ptrdiff_t>(header_.size()), cells.end(),
+                       [](const std::string& cell) { return !cell.empty(); });
+  }
+
   std::nullopt_t bad(const std::string& reason) {
     countBad(recorder_.tally(), location_, reason);
     return std::nullopt;
@@ -307,16 +283,21 @@ class TableReader {
                                     : (*number - column.day_of_1970) * kSecondsPerDay;
         }
         recorder_.mayBeDays(!column.has_unit);
-        if (time > kUnixTime_s) {
+        if (!column.has_unit && time == std::floor(time)) {
+          if (plain_times_++ == 0) first_time_ = time;
+          last_time_ = time;
+        }
+        if (time > kFirstUnixTime_s) {
           is_utc_ = true;
           tellGpsName(column);
         }
         return secondsOf(time);
       }
     }
-    const std::string text = is_compact        ? told->substr(0, 8) + "T" + told->substr(8)
-                             : date == nullptr ? *told
-                                               : *date + " " + *told;
+    std::string text = is_compact        ? told->substr(0, 8) + "T" + told->substr(8)
+                       : date == nullptr ? *told
+                                         : *date + " " + *told;
+    if (const std::string* const offset = cellOf(cells, Column::utc_offset)) text += *offset;
     const DateOrder order = date == nullptr ? column.order : columns_.at(Column::date).order;
     if (const auto time_s = utcSeconds(text, order)) {
       is_utc_ = true;
@@ -394,6 +375,20 @@ class TableReader {
     return bad(fmt::format("its position '{}' cannot be read", printableText(text)));
   }
 
+  /// Letters of other encodings than UTF-8 as Latin-1, so that different ids stay different.
+  static std::string idText(const std::string& id) {
+    return printableText(isUtf8(id) ? id : utf8Of(id, "LATIN1"));
+  }
+
+  /// It has both coordinates in one column.
+  bool isOfFlightradar() const {
+    const auto has = [this](const char* name) {
+      return std::any_of(header_.begin(), header_.end(),
+                         [name](const std::string& cell) { return lowerCase(cell) == name; });
+    };
+    return columns_.count(Column::position) != 0 && has("callsign") && has("direction");
+  }
+
   /// Its heights are in metres, by its documentation.
   bool isOfOpenSky(Column column) const {
     const std::string name = lowerCase(header_[columns_.at(column).index]);
@@ -416,8 +411,7 @@ class TableReader {
                                        : cell->find_first_of("0123456789") == std::string::npos;
       if (is_unknown) continue;
       if (!height_m) return bad(fmt::format("its height '{}' is no number", printableText(*cell)));
-      // As Flightradar24 writes it, which has both coordinates in one column.
-      if (columns_.count(Column::position) != 0 && !columns_.at(column).has_unit) {
+      if (!columns_.at(column).has_unit && isOfFlightradar()) {
         recorder_.assume("height without a unit in a table of Flightradar24: taken as feet");
         *height_m *= kMetresPerFoot;
       } else if (!columns_.at(column).has_unit && options_.columns.find("height") == std::string::npos &&
@@ -442,6 +436,9 @@ class TableReader {
     for (UnusedColumn& column : unused_) column.take(column.index < cells.size() ? cells[column.index] : "");
     const auto time_s = place ? timeOf(cells) : std::nullopt;
     if (!time_s) return;
+    if (last_place_)
+      path_deg_ += std::hypot(place->first - last_place_->first, place->second - last_place_->second);
+    last_place_ = place;
     PoseSample pose;
     pose.t_s = *time_s;
     pose.latitude_deg = place->first;
@@ -459,14 +456,18 @@ class TableReader {
       recorder_.assume("heading beyond a turn: not known");
     }
     const std::string* const id = cellOf(cells, Column::id);
-    recorder_.add(recorder_.objectOf(id == nullptr ? stem_ : printableText(*id)), pose, location_);
+    recorder_.add(recorder_.objectOf(id == nullptr ? stem_ : idText(*id)), pose, location_);
   }
 
   std::string name_, stem_, location_;
   const ReadOptions& options_;
   TrackRecorder recorder_;
-  std::vector<std::string> header_;
+  std::vector<std::string> header_, units_;  ///< units_: the last comment above the header
   Columns columns_;
+  long long plain_times_ = 0;  ///< whole numbers without a unit, since no known time
+  double first_time_ = 0, last_time_ = 0;
+  double path_deg_ = 0;  ///< way of all rows, roughly
+  std::optional<std::pair<double, double>> last_place_;
   char separator_ = ',';
   std::vector<UnusedColumn> unused_;
   std::optional<std::pair<std::size_t, std::size_t>> hemispheres_;  ///< columns of N or S, and of E or W

@@ -277,12 +277,12 @@ std::size_t shownCategories(ImageSize size, const Style& style, const Legend& le
   return rows > below + 1 ? rows - below - 1 : 0;
 }
 
-void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
-  double y = topOf(canvas.size(), style, legend);
-  drawHeading(canvas, style, legend, left, y);
-  const std::size_t shown = shownCategories(canvas.size(), style, legend);
+/// Draws a row for each of the first categories, and one with the number of the others. @param y  above them
+/// @return the middle of the row below
+double drawRows(Canvas& canvas, const Style& style, const std::vector<Category>& categories,
+                std::size_t shown, double left, double y) {
   for (std::size_t n = 0; n < shown; ++n) {
-    const Category& category = legend.categories[n];
+    const Category& category = categories[n];
     y += kRowHeight * style.unit;
     const double swatch = kSwatch * style.unit;
     canvas.rectangle({left, y - swatch / 2, swatch, swatch},
@@ -292,16 +292,37 @@ void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, do
                        style.rimInk());
   }
   y += kRowHeight * style.unit;
-  if (shown < legend.categories.size()) {
-    canvas.textWithRim(fmt::format("and {} more", legend.categories.size() - shown), {left, y},
-                       style.small_px, style.mutedInk(), style.rimInk());
-    y += kRowHeight * style.unit;
-  }
+  if (shown == categories.size()) return y;
+  canvas.textWithRim(fmt::format("and {} more", categories.size() - shown), {left, y}, style.small_px,
+                     style.mutedInk(), style.rimInk());
+  return y + kRowHeight * style.unit;
+}
+
+void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
+  const double top = topOf(canvas.size(), style, legend);
+  drawHeading(canvas, style, legend, left, top);
+  const std::size_t shown = shownCategories(canvas.size(), style, legend);
+  double y = drawRows(canvas, style, legend.categories, shown, left, top);
   if (drawHatched(canvas, style, legend, left, y)) y += kRowHeight * style.unit;
   drawNotes(canvas, style, legend, left, y);
 }
 
 }  // namespace
+
+void drawGroundClasses(Canvas& canvas, const Style& style, const std::vector<Category>& classes,
+                       double bottom, std::vector<Rect>& taken) {
+  const double row = kRowHeight * style.unit, left = kEdge * style.unit;
+  const double top = headerHeight(style) + 0.5 * row;
+  const auto rows = static_cast<std::size_t>(std::max((bottom - top) / row - 1, 0.0));
+  if (classes.empty() || rows < 2) return;
+  const std::size_t shown = classes.size() <= rows ? classes.size() : rows - 1;
+  canvas.textWithRim("ground", {left, top}, style.small_px, style.mutedInk(), style.rimInk());
+  const double end = drawRows(canvas, style, classes, shown, left, top);
+  std::vector<std::string> names;
+  for (std::size_t n = 0; n < shown; ++n) names.push_back(classes[n].name);
+  const double width = std::min(widestText(names, style.small_px), nameRoom(style));
+  taken.push_back({0, top - row / 2, left + (kSwatch + kSwatchGap) * style.unit + width, end - top});
+}
 
 std::vector<double> roundTicks(double lowest, double highest, int count) {
   std::vector<double> ticks;

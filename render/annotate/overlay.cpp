@@ -121,6 +121,7 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     taken.push_back({0, 0, static_cast<double>(canvas.size().width), headerHeight(style)});
   const double reach = (kMargin + kCompassRadius + 10) * style.unit;
   const Point2 compass{reach, canvas.size().height - reach - 14 * style.unit};
+  drawGroundClasses(canvas, style, annotations.ground_classes, compass.y - reach, taken);
   const bool has_compass = annotations.georeferenced && annotations.compass;
   if (has_compass) taken.push_back({compass.x - reach / 2, compass.y - reach / 2, reach, reach});
   if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);

@@ -49,6 +49,10 @@ double legendWidth(const Style& style, const Legend& legend);
 /// Minimum height of a picture with room for all entries of a categorical legend; 0 for other legends.
 double legendHeight(const Style& style, const Legend& legend);
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend);
+/// The classes on the ground at the left, below the header; those without room are counted. Adds their box to
+/// `taken`. @param bottom  end of the room (pixels)
+void drawGroundClasses(Canvas& canvas, const Style& style, const std::vector<Category>& classes,
+                       double bottom, std::vector<Rect>& taken);
 /// Frames of the planes that are on, and their captions. Adds the boxes of the captions to `taken`.
 void drawPlanes(Canvas& canvas, const Style& style, const Projector& projector,
                 const Annotations& annotations, std::vector<Rect>& taken);

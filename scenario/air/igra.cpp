@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "base/files/file_reading.h"
 #include "base/text/utc.h"
 #include "document/text_lines.h"
 #include "propagation/air/moist_air.h"
@@ -31,7 +30,7 @@ constexpr FieldSpec kPressureField{"PRESS", 10, 15}, kHeightField{"GPH", 17, 21}
 class Igra : public SoundingArchive {
  public:
   explicit Igra(const std::string& file)
-      : file_(file), text_(readWholeText(file, kMaxSoundingBytes)), lines_(soundingLines(text_)) {}
+      : file_(file), text_(soundingText(file)), lines_(soundingLines(text_)) {}
 
   std::vector<SoundingRecord> records() const override {
     std::vector<SoundingRecord> records;

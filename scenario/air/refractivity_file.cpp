@@ -249,4 +249,18 @@ bool isRefractivityCsv(const std::string& file) {
   return hasColumn(m) || hasColumn(n) || hasColumn(humidity) || (hasColumn(height) && !is_track);
 }
 
+bool isTableOfAir(const std::string& file) {
+  const std::vector<std::string> names = document::csvColumnsOf(file);
+  const auto has = [&](const char* word) {
+    return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return document::upperCase(name).find(word) != std::string::npos;
+    });
+  };
+  return has("TEMP") && (has("PRES") || has("HPA"));
+}
+
+const char* refractivityColumns() {
+  return kHeader;
+}
+
 }  // namespace emscape::scenario

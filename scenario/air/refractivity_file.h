@@ -52,11 +52,15 @@ RefractivityFile readRefractivity(const std::string& file);
 bool isSoundingFile(const std::string& file);
 /// True if a CSV file has a header for readRefractivity().
 bool isRefractivityCsv(const std::string& file);
+/// True for a table with pressures and temperatures in other columns than those of refractivity.
+bool isTableOfAir(const std::string& file);
+/// The columns that a CSV file of refractivity has, for messages.
+const char* refractivityColumns();
 
-/// One sounding of a file of IGRA 2 or of the University of Wyoming (see docs/parabolic-equation.md): the
-/// levels with pressure and temperature up to 10 km. Missing heights follow from the hydrostatic equation.
-/// Levels without humidity are left out below the highest level that has it, and are dry above. Thinned to
-/// 0.5 M-units.
+/// One sounding of a file of IGRA 2, of the University of Wyoming or of the Storm Prediction Center (see
+/// docs/parabolic-equation.md): the levels with pressure and temperature up to 10 km. Missing heights follow
+/// from the hydrostatic equation. Levels without humidity are left out below the highest level that has it,
+/// and are dry above. Thinned to 0.5 M-units.
 /// @param time_ms  from 1970 on, UTC: the usable sounding nearest to it; none: the file's last usable one
 /// @throws Error (bad_input) with line and column
 RefractivityFile readSounding(const std::string& file, std::optional<std::int64_t> time_ms);

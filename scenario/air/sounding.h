@@ -52,6 +52,12 @@ std::unique_ptr<SoundingArchive> openIgra(const std::string& file);
 std::unique_ptr<SoundingArchive> openWyomingList(const std::string& file);
 /// University of Wyoming, "CSV": one sounding, with a position and a time in each row.
 std::unique_ptr<SoundingArchive> openWyomingCsv(const std::string& file);
+/// Storm Prediction Center, the text with %TITLE% and %RAW% that SHARPpy reads and writes.
+std::unique_ptr<SoundingArchive> openSpc(const std::string& file);
+
+/// The text of a file, or of the only .txt or .csv in a .zip or .gz, as the archives give them.
+/// @throws Error (bad_input)
+std::string soundingText(const std::string& file);
 
 /// The lines of a text, without CR at their ends.
 std::vector<std::string_view> soundingLines(std::string_view text);

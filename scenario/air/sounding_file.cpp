@@ -4,15 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
 
+#include "base/files/file_reading.h"
 #include "document/csv.h"
 #include "document/text_lines.h"
 #include "emscape/base/error.h"
 #include "propagation/air/moist_air.h"
 #include "scenario/air/refractivity_file.h"
 #include "scenario/air/sounding.h"
+#include "scenario/terrain/file_names.h"
+#include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::scenario {
 namespace {
@@ -27,16 +31,35 @@ constexpr double kGeopotentialRadius_m = 6356766;
 
 using Open = std::unique_ptr<SoundingArchive> (*)(const std::string&);
 
+/// The text in a packed file; none if the file is not packed, or holds something else.
+std::optional<ElevationSource> packedText(const std::string& file) {
+  const auto isText = [](const std::string& name) {
+    return lowerEnding(name) == ".txt" || lowerEnding(name) == ".csv";
+  };
+  const std::string stem = std::filesystem::path(file).stem().string();
+  if (lowerEnding(file) == ".gz" && isText(stem)) return ElevationSource{file, stem};
+  if (lowerEnding(file) != ".zip") return std::nullopt;
+  const GdalMessages quiet;
+  const std::vector<std::string> members = membersOfZip(file);
+  return members.size() == 1 && isText(members[0]) ? std::optional(ElevationSource{file, members[0]})
+                                                   : std::nullopt;
+}
+
 /// The reader of a file by its beginning; null: it has no soundings.
 Open readerOf(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
   std::string begin(4096, '\0');
-  stream.read(begin.data(), std::streamsize(begin.size()));
-  begin.resize(std::size_t(stream.gcount()));
+  if (packedText(file)) {
+    begin = soundingText(file).substr(0, begin.size());
+  } else {
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(begin.data(), std::streamsize(begin.size()));
+    begin.resize(std::size_t(stream.gcount()));
+  }
   if (begin.size() >= 36 && begin.front() == '#' && begin[12] == ' ' && begin[17] == ' ' &&
       numberIn(std::string_view(begin).substr(13, 4))) {
     return openIgra;
   }
+  if (begin.find("%TITLE%") != std::string::npos && begin.find("%RAW%") != std::string::npos) return openSpc;
   if (begin.find("pressure_hPa,") != std::string::npos) return openWyomingCsv;
   if (begin.find(" Observations at ") != std::string::npos && begin.find("PRES") != std::string::npos)
     return openWyomingList;
@@ -84,11 +107,14 @@ class Sounding {
       : record_(std::move(record)), levels_(archive.levelsOf(record_)), file_(file) {
     const bool is_downwards = !levels_.empty() && levels_.front().pressure_hpa < levels_.back().pressure_hpa;
     if (is_downwards) std::reverse(levels_.begin(), levels_.end());
+    const std::string contradiction = contradictionOfLevels();
     completeHumidity(levels_);
     if (levels_.empty()) {
       obstacle_ = "the sounding has no level with pressure, temperature and humidity";
     } else if (!completeHeights(levels_)) {
       obstacle_ = "the sounding has no level with pressure, temperature, humidity and height";
+    } else if (!contradiction.empty()) {
+      obstacle_ = contradiction;
     } else {
       makeProfile();
     }
@@ -102,6 +128,40 @@ class Sounding {
   const std::vector<RefractivityLevel>& refractivity() const { return refractivity_; }
 
  private:
+  /// What columns that contradict each other have in common: exchanged ones, heights in feet; empty: none.
+  std::string contradictionOfLevels() const {
+    constexpr double kDewPointRange_k = 0.5, kMaxThicknessError = 0.2, kMinThickness_m = 500;
+    std::size_t wet = 0, known = 0;
+    std::vector<SoundingLevel> stated;
+    for (const SoundingLevel& level : levels_) {
+      if (!std::isnan(level.height_msl_m)) stated.push_back(level);
+      if (std::isnan(level.vapour_hpa)) continue;
+      ++known;
+      if (level.vapour_hpa > saturationPressure_hpa(level.temperature_k + kDewPointRange_k)) ++wet;
+    }
+    if (2 * wet > known)
+      return fmt::format(
+          "the dew point is above the temperature on {} of {} levels of the sounding; are their columns "
+          "exchanged?",
+          wet, known);
+    if (stated.size() < 2) return "";
+    std::vector<SoundingLevel> by_pressure = stated;
+    for (SoundingLevel& level : by_pressure) {
+      if (std::isnan(level.vapour_hpa)) level.vapour_hpa = 0;
+      if (&level != &by_pressure.front()) level.height_msl_m = std::nan("");
+    }
+    completeHeights(by_pressure);
+    const double rise_m = stated.back().height_msl_m - stated.front().height_msl_m;
+    const double thickness_m = by_pressure.back().height_msl_m - by_pressure.front().height_msl_m;
+    if (!(thickness_m > kMinThickness_m) ||
+        std::abs(rise_m - thickness_m) <= kMaxThicknessError * thickness_m)
+      return "";
+    return fmt::format(
+        "the sounding's heights rise by {:.0f} m from {} to {} hPa, which are {:.0f} m apart by pressure and "
+        "temperature; are the heights in feet?",
+        rise_m, stated.front().pressure_hpa, stated.back().pressure_hpa, thickness_m);
+  }
+
   void makeProfile() {
     for (const SoundingLevel& level : levels_) {
       if (level.height_msl_m > kHighest_m) break;
@@ -127,6 +187,16 @@ class Sounding {
 };
 
 }  // namespace
+
+std::string soundingText(const std::string& file) {
+  const std::optional<ElevationSource> packed = packedText(file);
+  if (!packed) return readWholeText(file, kMaxSoundingBytes);
+  try {
+    return unpackedContent(*packed, kMaxSoundingBytes);
+  } catch (const Error& error) {
+    throw Error(error.code(), {file, 0, 0}, error.message());
+  }
+}
 
 std::vector<std::string_view> soundingLines(std::string_view text) {
   std::vector<std::string_view> lines;
@@ -159,7 +229,9 @@ RefractivityFile readSounding(const std::string& file, std::optional<std::int64_
   const std::unique_ptr<SoundingArchive> archive = (open != nullptr ? open : openIgra)(file);
   std::vector<SoundingRecord> records = archive->records();
   if (records.empty())
-    throw Error(ErrorCode::bad_input, {file, 1, 1}, "no soundings; a header begins with #");
+    throw Error(ErrorCode::bad_input, {file, 1, 1},
+                "no soundings of IGRA 2 (a header begins with #), the University of Wyoming (a heading has "
+                "'Observations at') or the Storm Prediction Center (%TITLE% and %RAW%)");
   // The nearest comes first; without a time the last.
   std::reverse(records.begin(), records.end());
   const auto distance = [&](const SoundingRecord& record) {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/files/file_reading.h"
 #include "base/text/utc.h"
 #include "document/csv.h"
 #include "document/text_lines.h"
@@ -44,7 +43,7 @@ std::string withoutTags(std::string_view line) {
 class WyomingList : public SoundingArchive {
  public:
   explicit WyomingList(const std::string& file) : file_(file) {
-    const std::string text = readWholeText(file, kMaxSoundingBytes);
+    const std::string text = soundingText(file);
     for (const std::string_view line : soundingLines(text)) lines_.push_back(withoutTags(line));
   }
 
@@ -211,7 +210,7 @@ class WyomingList : public SoundingArchive {
 
 class WyomingCsv : public SoundingArchive {
  public:
-  explicit WyomingCsv(const std::string& file) : file_(file), text_(readWholeText(file, kMaxSoundingBytes)) {
+  explicit WyomingCsv(const std::string& file) : file_(file), text_(soundingText(file)) {
     document::CsvReader reader(text_);
     document::CsvRow row;
     std::array<std::optional<std::size_t>, kColumns> at;

@@ -250,6 +250,14 @@ class PatternTable {
                       "and name the column gain_db or gain_dbi",
                       value_.title));
     }
+    constexpr double kHighest_db = 50;
+    if (!has_unit && min_db >= 0 && max_db > kHighest_db) {
+      throw Error(
+          ErrorCode::bad_input, {text_.file(), 0, 0},
+          fmt::format("the values of '{}' have no unit, are never below 0 and reach {:.4g}, as those of "
+                      "a linear gain; give them in dB and name the column gain_db or gain_dbi",
+                      value_.title, max_db));
+    }
     if (!has_unit)
       pattern.warnings.push_back(text_.file() + ": '" + value_.title + "' has no unit; taken as dB");
     if (value_.unit == "dbi") {

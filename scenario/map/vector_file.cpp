@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
+#include <set>
 
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
@@ -11,20 +13,37 @@
 namespace emscape::scenario {
 namespace {
 
-gdal::Dataset openVectors(const GdalMessages& messages, const std::string& file) {
-  static const char* const kDrivers[] = {"GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf", "KML", "LIBKML",
-                                         "GML",  "CSV",     nullptr};
+gdal::Dataset openVectors(const GdalMessages& messages, MemoryFiles& unpacked, const std::string& file) {
+  static const char* const kDrivers[] = {
+      "GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf", "KML", "LIBKML", "GML", "GPX", "CSV", nullptr};
   // GML: no NAME.gfs beside the file. The @ is for the other drivers, which do not have the option.
   static const char* const kOptions[] = {"@WRITE_GFS=NO", nullptr};
   if (const std::string fault = gdal::faultOfName(file); !fault.empty()) {
     throw Error(ErrorCode::bad_input, {file, 0, 0}, fault);
   }
-  gdal::Dataset dataset = gdal::openFile(file, GDAL_OF_VECTOR, kDrivers, kOptions);
+  const ElevationSource source = vectorSourceIn(file);
+  gdal::Dataset dataset;
+  if (source.member.empty()) {
+    dataset = gdal::openFile(file, GDAL_OF_VECTOR, kDrivers, kOptions);
+  } else {
+    try {
+      const std::string name = unpacked.unpack(source);
+      dataset = gdal::openInMemory(name, GDAL_OF_VECTOR, kDrivers, unpacked.siblings().data(), kOptions);
+    } catch (const Error& error) {
+      throw Error(error.code(), {source.name(), 0, 0}, error.message());
+    }
+  }
   if (dataset == nullptr) {
-    throw Error(ErrorCode::bad_input, {file, 0, 0},
+    throw Error(ErrorCode::bad_input, {source.name(), 0, 0},
                 messages.explain("not a file of points or polygons that can be read"));
   }
   return dataset;
+}
+
+bool isVectorName(const std::string& name) {
+  static const std::set<std::string> kEndings{".gpkg", ".geojson", ".json", ".shp", ".fgb",
+                                              ".kml",  ".gml",     ".gpx",  ".csv", ".tsv"};
+  return kEndings.count(lowerEnding(name)) != 0;
 }
 
 /// Longest text (bytes) that a message repeats.
@@ -47,7 +66,27 @@ int geometryColumn(OGRFeatureDefnH layer) {
 
 }  // namespace
 
-VectorFile::VectorFile(const std::string& file) : file_(file), dataset_(openVectors(messages_, file)) {
+ElevationSource vectorSourceIn(const std::string& file) {
+  if (lowerEnding(file) != ".zip") return {file};
+  const auto fail = [&](const std::string& problem) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0}, problem);
+  };
+  const GdalMessages messages;
+  const std::vector<std::string> members = membersOfZip(file);
+  std::vector<std::string> vectors;
+  std::copy_if(members.begin(), members.end(), std::back_inserter(vectors), isVectorName);
+  if (members.empty()) fail(messages.explain("cannot be read as a ZIP archive"));
+  if (vectors.empty())
+    fail(fmt::format("none of its {} members is a file of points or polygons by its ending, such as {}",
+                     members.size(), members.front()));
+  if (vectors.size() > 1)
+    fail(fmt::format("has {} files of points or polygons; unpack it and name one, such as {}", vectors.size(),
+                     vectors.front()));
+  return {file, vectors.front()};
+}
+
+VectorFile::VectorFile(const std::string& file)
+    : file_(file), dataset_(openVectors(messages_, unpacked_, file)) {
   if (messages_.hasFailure()) failIncomplete(file_, messages_);
 }
 
@@ -68,8 +107,12 @@ std::vector<std::string> VectorFile::files() const {
 
 std::vector<OGRLayerH> VectorFile::layers() const {
   std::vector<OGRLayerH> layers;
+  const bool is_gpx = std::string(GDALGetDriverShortName(GDALGetDatasetDriver(dataset_.get()))) == "GPX";
   for (int n = 0; n < GDALDatasetGetLayerCount(dataset_.get()); ++n) {
-    layers.push_back(GDALDatasetGetLayer(dataset_.get(), n));
+    const OGRLayerH layer = GDALDatasetGetLayer(dataset_.get(), n);
+    const std::string name = OGR_L_GetName(layer);
+    const bool repeats = is_gpx && (name == "track_points" || name == "route_points");
+    if (!repeats) layers.push_back(layer);
   }
   return layers;
 }

@@ -5,13 +5,18 @@
 #include <vector>
 
 #include "base/geodesy/gdal.h"
+#include "scenario/terrain/file_names.h"
 #include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::scenario {
 
-/// A GeoPackage, GeoJSON, shapefile, FlatGeobuf, KML, GML or CSV. No other format and none of GDAL's virtual
-/// file systems: they read further files, databases and network services. What GDAL reports as unreadable is
-/// an error. Use it in the thread and scope that made it, as GdalMessages.
+/// The file of points or polygons in a file: itself, or the only one in a .zip.
+/// @throws Error (bad_input) that names the file: an archive that cannot be read, with none or with several
+ElevationSource vectorSourceIn(const std::string& file);
+
+/// A GeoPackage, GeoJSON, shapefile, FlatGeobuf, KML, KMZ, GML, GPX or CSV, or a .zip with one. No other
+/// format and none of GDAL's virtual file systems: they read further files, databases and network services.
+/// What GDAL reports as unreadable is an error. Use it in the thread and scope that made it, as GdalMessages.
 class VectorFile {
  public:
   /// @throws Error (bad_input) that names the file and GDAL's reason
@@ -21,6 +26,7 @@ class VectorFile {
   /// exists. In ascending order.
   std::vector<std::string> files() const;
 
+  /// Of GPX the layers of waypoints, routes and tracks, not those of the points of the last two.
   std::vector<OGRLayerH> layers() const;
 
   /// Calls visit(feature) for each feature of a layer. GDAL's failures inside visit() are not reported here.
@@ -39,6 +45,7 @@ class VectorFile {
 
   const std::string file_;
   const GdalMessages messages_;
+  MemoryFiles unpacked_;  ///< of a .zip
   const gdal::Dataset dataset_;
 };
 

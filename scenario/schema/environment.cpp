@@ -75,7 +75,8 @@ const ObjectSpec& elevationFileSpec() {
           optional("crs", textOf(ValueType::text, 4096).printable(),
                    "coordinate reference system of its posts, such as EPSG:32633, if the file states none"),
           byDefault("swap_bytes", simple(ValueType::boolean), "false",
-                    "true: the two bytes of each height are in the other order than the file states"),
+                    "true: the bytes of each height (whole numbers of 16 bits, real ones of 32) are in the "
+                    "other order than the file states"),
           byDefault(
               "implausible", choiceOf<ImplausibleHeights>(), toString(ImplausibleHeights::error),
               "treatment of heights that are not on earth (-11500 to 9000 m) if they are more than 1 %: "

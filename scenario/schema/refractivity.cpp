@@ -51,7 +51,8 @@ const ObjectSpec& refractivitySpec() {
               "kind", choice(kinds),
               "standard: 118 M-units per km; linear: gradient_m_per_km; evaporation_duct: Paulus's "
               "profile; surface_duct: falling from the surface; trilinear: falling in a layer; profile: a "
-              "CSV file; soundings: a file of IGRA 2 or of the University of Wyoming; bulk: similarity "
+              "CSV file; soundings: a file of IGRA 2, of the University of Wyoming or of the Storm "
+              "Prediction Center; bulk: similarity "
               "theory over the sea (NAVSLaM 2.0)"),
           byDefault("surface_m_units", spread(number("M-units").from(200).to(500)),
                     propagation::kSurface_m_units, "M at the surface; only differences bend rays",
@@ -71,7 +72,8 @@ const ObjectSpec& refractivitySpec() {
                    "latitude_deg and longitude_deg",
                    {"profile"}),
           required("file", textOf(ValueType::file, 4096),
-                   "soundings, as IGRA 2 or the University of Wyoming (list or CSV) gives them",
+                   "soundings, as IGRA 2, the University of Wyoming (list or CSV) or the Storm Prediction "
+                   "Center gives them",
                    {"soundings"}),
           optional("time", simple(ValueType::timestamp),
                    "the sounding nearest to it; by default to the epoch, else the file's last",

@@ -26,7 +26,8 @@ constexpr const char* kColumns[] = {"code", "name", "clutter_height_m", "zone", 
 /// Reads the rows of one table.
 class TableReader {
  public:
-  TableReader(const std::string& file, std::string_view text) : file_(file), reader_(text) {}
+  TableReader(const std::string& file, std::string_view text)
+      : file_(file), reader_(text, document::separatorOf(text)) {}
 
   std::vector<CoverClass> read() {
     CsvRow header;
@@ -70,7 +71,7 @@ class TableReader {
       fail(locationOf(0), fmt::format("code '{}' is not a whole number from 0 to 65535", cell(0).text));
     read.code = static_cast<int>(*code);
     read.name = cell(1).text;
-    const std::optional<double> height_m = document::numberIn(cell(2).text);
+    const std::optional<double> height_m = document::numberOrCommaIn(cell(2).text);
     if (!height_m || !(*height_m >= 0 && *height_m <= kMaxClutter_m))
       fail(locationOf(2),
            fmt::format("clutter_height_m '{}' is not within 0 to {:g} m", cell(2).text, kMaxClutter_m));

@@ -76,6 +76,15 @@ bool isStandardTile(const std::string& name, int posts) {
 }
 
 /// The height in a colour.
+/// The band of opacity, which GDAL takes as a mask of whole numbers only; null: there is none.
+GDALRasterBandH alphaBandOf(GDALDatasetH dataset) {
+  for (int n = GDALGetRasterCount(dataset); n > 1; --n) {
+    GDALRasterBandH band = GDALGetRasterBand(dataset, n);
+    if (GDALGetRasterColorInterpretation(band) == GCI_AlphaBand) return band;
+  }
+  return nullptr;
+}
+
 double decoded(HeightEncoding encoding, float red, float green, float blue) {
   const double r = static_cast<double>(red), g = static_cast<double>(green), b = static_cast<double>(blue);
   return encoding == HeightEncoding::terrarium ? r * 256 + g + b / 256 - 32768
@@ -96,16 +105,17 @@ struct TerrainFile::Impl {
   int band = 1;
   HeightMeaning meaning;
   std::optional<Georeference> georeference;
-  bool is_16_bits = false;
-  bool is_ellipsoidal = false;  ///< as its netCDF variable states
-  std::string depth_name;       ///< long name of a netCDF variable that speaks of depth
-  bool is_tile = false;         ///< an HGT that GDAL does not read by itself
+  bool is_16_bits = false, is_real = false;  ///< type of the band; is_real: of 32 bits
+  bool is_ellipsoidal = false;               ///< as its netCDF variable states
+  std::string band_warning;                  ///< of bands with names
+  std::string depth_name;                    ///< long name of a netCDF variable that speaks of depth
+  bool is_tile = false;                      ///< an HGT that GDAL does not read by itself
   mutable std::unique_ptr<MemoryFiles> unpacked;
   mutable std::string unpacked_name;
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw Error(ErrorCode::bad_input, location,
-                (keys.has_classes ? "land cover file " : "elevation file ") + name + ": " + problem);
+    const std::string file = (keys.has_classes ? "land cover file " : "elevation file ") + name + ": ";
+    throw Error(ErrorCode::bad_input, location, problem.rfind(file, 0) == 0 ? problem : file + problem);
   }
   /// Errors of what a function finds become those of the file.
   template <class Find>
@@ -140,10 +150,8 @@ std::set<fs::path> TerrainFile::Impl::checkedSources() const {
 std::string TerrainFile::Impl::tileInMemory(MemoryFiles& files, std::string bytes) const {
   const std::optional<TileCorner> corner = cornerInName(source.ownName());
   const int posts = tilePosts(bytes.size());
+  if (const std::string foreign = foreignContent(bytes); !foreign.empty()) fail(foreign);
   if (posts == 0) {
-    if (bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF") < bytes.size() &&
-        bytes[bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF")] == '<')
-      fail("is a web page, such as that of a login, not an HGT tile; get it again");
     fail(fmt::format(
         "has {} bytes, which is no square of posts of 2 bytes as an HGT tile has (1201, 3601, 7201 or "
         "10801 posts a side); it may be cut off or of another format",
@@ -233,9 +241,24 @@ void TerrainFile::Impl::readHead() {
                      keys.band, bands));
   band = std::max(keys.band, 1);
   if (bands > 1 && keys.band == 0 && !keys.encoding) {
-    notes.push_back("has " + std::to_string(bands) + " bands: heights are taken from the first");
+    std::string names;
+    for (int n = 1; n <= bands; ++n) {
+      const std::string name_of_band = GDALGetDescription(GDALGetRasterBand(dataset.get(), n));
+      if (!name_of_band.empty())
+        names += fmt::format("{}{} '{}'", names.empty() ? "" : ", ", n, name_of_band);
+    }
+    const std::string text = fmt::format("has {} bands{}: heights are taken from the first", bands,
+                                         names.empty() ? "" : " (" + names + ")");
+    if (names.empty())
+      notes.push_back(text);
+    else
+      band_warning = text + "; `band` of the file in the scenario chooses another";
   }
   checkDatasets(dataset.get(), sources);
+  if (EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(dataset.get())), "AAIGrid") &&
+      source.member.empty()) {
+    if (const std::string fault = faultOfGridRow(source.file, columns); !fault.empty()) fail(fault);
+  }
   readBand(dataset.get());
   placePosts(dataset.get());
 }
@@ -265,9 +288,11 @@ void TerrainFile::Impl::readBand(GDALDatasetH dataset) {
         "`height_unit: m` of the file in the scenario states it");
   is_16_bits =
       GDALGetRasterDataType(of_heights) == GDT_Int16 || GDALGetRasterDataType(of_heights) == GDT_UInt16;
-  if (keys.swap_bytes && !is_16_bits)
-    fail(fmt::format("'swap_bytes' of the scenario needs heights of 16 bits; the file has {}",
-                     GDALGetDataTypeName(GDALGetRasterDataType(of_heights))));
+  is_real = GDALGetRasterDataType(of_heights) == GDT_Float32;
+  if (keys.swap_bytes && !is_16_bits && !is_real)
+    fail(fmt::format(
+        "'swap_bytes' of the scenario needs heights of 16 bits or real numbers of 32; the file has {}",
+        GDALGetDataTypeName(GDALGetRasterDataType(of_heights))));
   scale = GDALGetRasterScale(of_heights, nullptr);
   if (scale > 0) readMeaningOfNetcdf(of_heights);
   offset = GDALGetRasterOffset(of_heights, nullptr);
@@ -321,7 +346,18 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
   bool is_tile_of_web = false;
   if (GDALGetGeoTransform(dataset, transform) != CE_None) {
     is_tile_of_web = keys.encoding && webTileTransform(source.file, columns, rows, transform);
-    if (!is_tile_of_web) fail(remedyForNoGeoreference(source));
+    if (!is_tile_of_web && GDALGetGCPCount(dataset) > 0)
+      fail(
+          fmt::format("has its position in ground control points; gdalwarp -t_srs EPSG:4326 {} HEIGHTS.tif "
+                      "makes a grid of it",
+                      shellWord(source.ownName())));
+    const bool is_netcdf = EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(dataset)), "netCDF");
+    if (is_netcdf && GDALGetRasterCount(dataset) > 1)
+      fail(fmt::format(
+          "has {} layers and no georeference: a volume is not read from netCDF, but from .vdb, .nvdb, "
+          ".vti and .raw",
+          GDALGetRasterCount(dataset)));
+    if (!is_tile_of_web) fail(remedyForNoGeoreference(source, keys.encoding.has_value()));
   }
   const char* meaning_of_pixels = GDALGetMetadataItem(dataset, GDALMD_AREA_OR_POINT, nullptr);
   const bool is_area =
@@ -364,10 +400,12 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
                     keys,
                     is_ellipsoidal};
   if (is_tile) facts.driver = "SRTMHGT";
+  if (facts.band_unit.empty() && source.member.empty()) facts.band_unit = heightUnitBeside(source.file);
   if (keys.has_classes) facts.band_unit = "m";
   if (facts.driver == "SRTMHGT" || keys.encoding) facts.band_unit = "m";
   meaning = found([&] { return heightMeaningOf(facts); });
   notes.insert(notes.end(), meaning.notes.begin(), meaning.notes.end());
+  if (!band_warning.empty()) meaning.warnings.push_back(band_warning);
   if (!depth_name.empty())
     meaning.warnings.push_back(
         fmt::format("its variable is named '{}': if it has depths, downwards, ground is above the sea; "
@@ -461,6 +499,7 @@ HeightTally TerrainFile::read(const PostWindow& window, const RowSink& take) con
   // GDAL's mask is of the values before their bytes are exchanged.
   GDALRasterBandH mask_band =
       (GDALGetMaskFlags(band) & GMF_ALL_VALID) == 0 && !swaps ? GDALGetMaskBand(band) : nullptr;
+  if (mask_band == nullptr) mask_band = alphaBandOf(dataset.get());
   HeightTally tally;
   const int columns = static_cast<int>(window.columns);
   const int left = static_cast<int>(window.first_column);
@@ -495,7 +534,7 @@ HeightTally TerrainFile::read(const PostWindow& window, const RowSink& take) con
     is_known.assign(strip.size(), 1);
     for (std::size_t k = 0; k < strip.size(); ++k) {
       if (swaps) {
-        strip[k] = withSwappedBytes(strip[k]);
+        strip[k] = impl_->is_real ? withSwappedBytesOfReal(strip[k]) : withSwappedBytes(strip[k]);
         if (has_void_value != 0 && static_cast<double>(strip[k]) == void_value) mask[k] = 0;
       }
       is_known[k] =
@@ -504,6 +543,9 @@ HeightTally TerrainFile::read(const PostWindow& window, const RowSink& take) con
     for (int row = 0; impl_->is_16_bits && row < rows; row += kRowsPerSample)
       tally.addSteps(strip, is_known, static_cast<std::size_t>(row) * static_cast<std::size_t>(columns),
                      static_cast<std::size_t>(columns));
+    for (std::size_t k = 0; impl_->is_real && k < strip.size(); ++k) {
+      if (is_known[k] != 0) tally.addReal(strip[k]);
+    }
     for (std::size_t k = 0; k < strip.size(); ++k) {
       const double height_m = (strip[k] * impl_->scale + impl_->offset) * impl_->meaning.unit_m;
       strip[k] = is_known[k] != 0 && tally.add(height_m) ? static_cast<float>(height_m)

@@ -14,6 +14,7 @@
 #include "base/geodesy/gdal_file.h"
 #include "base/geodesy/netcdf_header.h"
 #include "emscape/base/error.h"
+#include "scenario/terrain/file_remedies.h"
 #include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::scenario {
@@ -23,8 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxFiles = 100000;
 constexpr int kMaxMembers = 100000;
-/// Largest content of a packed file (bytes): it is unpacked into memory.
-constexpr vsi_l_offset kMaxUnpackedBytes = vsi_l_offset{4} << 30;
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -61,7 +60,7 @@ bool isOfMacOs(const std::string& name) {
 }
 
 bool isHeightsName(const std::string& name) {
-  return isRasterName(name) && !isMaskName(name) && !isOfMacOs(name);
+  return isRasterName(name) && !isMaskName(name);
 }
 
 /// A VRT in a folder is a mosaic of the files beside it.
@@ -134,11 +133,14 @@ class NoGzipProperties {
   static constexpr const char* kKey = "CPL_VSIL_GZIP_WRITE_PROPERTIES";
 };
 
+}  // namespace
+
 std::vector<std::string> membersOfZip(const std::string& file) {
+  gdal::prepare();
   const gdal::Owned<CSLDestroy> list(VSIReadDirRecursive(vsiNameOf(file, "").c_str()));
   std::vector<std::string> members;
   for (char** at = list.get(); at != nullptr && *at != nullptr; ++at) {
-    members.emplace_back(*at);
+    if (!isOfMacOs(*at)) members.emplace_back(*at);
     if (members.size() > kMaxMembers)
       throw Error(ErrorCode::bad_input,
                   fmt::format("archive {} has more than {} members", file, kMaxMembers));
@@ -147,13 +149,11 @@ std::vector<std::string> membersOfZip(const std::string& file) {
   return members;
 }
 
-}  // namespace
-
 std::string lowerEnding(const std::string& name) {
   return lower(fs::path(name).extension().string());
 }
 
-std::string unpackedContent(const ElevationSource& source) {
+std::string unpackedContent(const ElevationSource& source, std::size_t max_bytes) {
   const GdalMessages messages;
   const NoGzipProperties no_properties;
   const auto fail = [&](const std::string& problem) {
@@ -168,9 +168,9 @@ std::string unpackedContent(const ElevationSource& source) {
     content.resize(before + kPart);
     const std::size_t got = VSIFReadL(&content[before], 1, kPart, stream.get());
     content.resize(before + got);
-    if (content.size() > kMaxUnpackedBytes)
-      fail(fmt::format("is larger than {} GiB when unpacked; unpack it and name the unpacked file",
-                       kMaxUnpackedBytes >> 30));
+    if (content.size() > max_bytes)
+      fail(fmt::format("is larger than {} MiB when unpacked; unpack it and name the unpacked file",
+                       max_bytes >> 20));
     if (got < kPart) break;
   }
   if (messages.hasFailure()) fail("cannot be unpacked");
@@ -208,6 +208,8 @@ std::vector<ElevationSource> sourcesIn(const std::string& file) {
   for (const std::string& member : members) {
     if (isHeightsName(member)) sources.push_back({file, member});
   }
+  const std::string foreign = members.empty() ? foreignContentOf(file) : "";
+  if (!foreign.empty()) throw Error(ErrorCode::bad_input, file + ": " + foreign);
   if (sources.empty())
     throw Error(ErrorCode::bad_input,
                 members.empty()
@@ -253,10 +255,11 @@ std::optional<TileCorner> cornerInName(const std::string& name) {
   };
   for (std::size_t k = 0; k < text.size(); ++k) {
     if ((text[k] != 'n' && text[k] != 's') || !isDigits(k + 1, 2)) continue;
-    std::size_t east = k + 3;
+    const std::size_t digits = isDigits(k + 1, 3) ? 3 : 2;  // of the latitude: also N034E135
+    std::size_t east = k + 1 + digits;
     if (east < text.size() && (text[east] == '_' || text[east] == '-' || text[east] == ' ')) ++east;
     if (east >= text.size() || (text[east] != 'e' && text[east] != 'w') || !isDigits(east + 1, 3)) continue;
-    const int latitude_deg = std::stoi(text.substr(k + 1, 2)),
+    const int latitude_deg = std::stoi(text.substr(k + 1, digits)),
               longitude_deg = std::stoi(text.substr(east + 1, 3));
     if (latitude_deg > 90 || longitude_deg > 180) continue;
     return TileCorner{text[k] == 's' ? -latitude_deg : latitude_deg,
@@ -288,7 +291,8 @@ std::string MemoryFiles::unpack(const ElevationSource& source) {
   gdal::prepare();
   const fs::path member = source.member;
   if (lowerEnding(source.file) == ".zip") {
-    static const std::set<std::string> kBeside{".hdr", ".prj", ".tfw", ".blw", ".ige"};
+    static const std::set<std::string> kBeside{".hdr", ".prj", ".tfw", ".blw",
+                                               ".ige", ".shx", ".dbf", ".cpg"};
     for (const std::string& other : membersOfZip(source.file)) {
       const fs::path path = other;
       if (path.parent_path() == member.parent_path() && path.stem() == member.stem() &&

@@ -41,8 +41,14 @@ std::vector<ElevationSource> sourcesOf(const TerrainSpec& spec, std::size_t item
 /// The keys of an item, with those of all files.
 TerrainFileKeys keysOf(const TerrainSpec& spec, std::size_t item);
 
+/// Largest content of a packed file (bytes): it is unpacked into memory.
+constexpr std::size_t kMaxUnpackedBytes = std::size_t{4} << 30;
+
 /// The content of a packed file. @throws Error (bad_input), without a location, if it cannot be unpacked
-std::string unpackedContent(const ElevationSource& source);
+std::string unpackedContent(const ElevationSource& source, std::size_t max_bytes = kMaxUnpackedBytes);
+/// The members of an archive in ascending order, without those that macOS adds; empty if it cannot be read.
+/// @throws Error (bad_input), without a location, if there are too many
+std::vector<std::string> membersOfZip(const std::string& file);
 /// The ending of a name, in lower case, with its point.
 std::string lowerEnding(const std::string& name);
 
@@ -61,7 +67,7 @@ class MemoryFiles {
   MemoryFiles(const MemoryFiles&) = delete;
   MemoryFiles& operator=(const MemoryFiles&) = delete;
 
-  /// Unpacks a packed file and those beside it in the archive that describe it (.hdr, .prj, ...).
+  /// Unpacks a packed file and those beside it in the archive that describe it (.hdr, .prj, .dbf, ...).
   /// @return the name for GDAL  @throws Error (bad_input), without a location, if it cannot be unpacked
   std::string unpack(const ElevationSource& source);
   /// Adds a file. @param name  without a folder  @return the name for GDAL

@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <vector>
 
 #include "base/geodesy/gdal_file.h"
 #include "base/text/shell_word.h"
+#include "document/text_lines.h"
 #include "emscape/base/units.h"
 #include "scenario/terrain/gdal_messages.h"
 #include "scenario/terrain/raster_access.h"
@@ -26,11 +31,67 @@ long long wholeNumber(const std::string& text) {
   return fault == std::errc() && end == text.data() + text.size() ? number : -1;
 }
 
+std::string beginningOf(const std::string& file) {
+  constexpr std::size_t kBytes = 4096;
+  std::ifstream stream(file, std::ios::binary);
+  std::string beginning(kBytes, '\0');
+  stream.read(beginning.data(), kBytes);
+  beginning.resize(static_cast<std::size_t>(stream.gcount()));
+  return beginning;
+}
+
+/// True if lines begin with a number, a blank or separator, and a further one.
+bool isTableOfNumbers(std::string_view text) {
+  int rows = 0;
+  for (std::size_t begin = 0; begin < text.size() && rows < 10;) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line(text.substr(begin, end - begin));
+    begin = end + 1;
+    const char* at = line.c_str();
+    int numbers = 0;
+    for (char* after = nullptr; numbers < 3; ++numbers, at = after + std::strspn(after, " \t,;")) {
+      std::strtod(at, &after);
+      if (after == at) break;
+    }
+    rows += numbers == 3 ? 1 : 0;
+  }
+  return rows >= 2;
+}
+
+/// What makes a grid that GDAL reads of a table of points: longitude, latitude and height in rows.
+std::string remedyForTable(const std::string& file) {
+  return fmt::format(
+      "as XYZ, whose lines are longitude (or easting), latitude (or northing) and height, without comments, "
+      "row by row, at posts of a grid. awk -F '[,; \\t]+' '/^[-+0-9.]/{{print $1,$2,$3}}' {0} | LC_ALL=C "
+      "sort "
+      "-k2,2g -k1,1g > HEIGHTS.xyz sorts its rows; where the latitude comes first, print $2,$1,$3",
+      shellWord(file));
+}
+
 }  // namespace
+
+std::string foreignContent(std::string_view beginning) {
+  const std::size_t first = beginning.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  if (first == std::string_view::npos) return "";
+  const std::string_view text = beginning.substr(first);
+  const std::string head = document::upperCase(text.substr(0, 15));
+  if (head.rfind("<!DOCTYPE HTML", 0) == 0 || head.rfind("<HTML", 0) == 0)
+    return "is a web page, such as that of a login; get the file again";
+  if (text.rfind("version https://git-lfs", 0) == 0)
+    return "is a pointer of Git LFS; 'git lfs pull' gets the file";
+  return text.rfind("%PDF-", 0) == 0 ? "is a PDF document" : "";
+}
+
+std::string foreignContentOf(const std::string& file) {
+  return foreignContent(beginningOf(file));
+}
 
 std::string faultOfUnreadable(const ElevationSource& source, bool is_picture) {
   const std::string ending = lowerEnding(source.ownName());
   if (source.member.empty()) {
+    if (const std::string foreign = foreignContentOf(source.file); !foreign.empty()) return foreign;
+    if (isTableOfNumbers(beginningOf(source.file)))
+      return "is a table of numbers that cannot be read " + remedyForTable(source.file);
     if (!is_picture && ending == ".png")
       return "is a PNG picture, not heights; `encoding: terrain-rgb` (or terrarium) of the file in the "
              "scenario decodes "
@@ -76,7 +137,12 @@ std::string remedyForPicture(int band, const std::string& colour, int bands) {
   return fmt::format("is a picture, not heights: its band {} is '{}'. {}", band, colour, decode);
 }
 
-std::string remedyForNoGeoreference(const ElevationSource& source) {
+std::string remedyForNoGeoreference(const ElevationSource& source, bool is_tile) {
+  if (is_tile)
+    return "has no position: a tile of a web map is placed by its path, ZOOM/COLUMN/ROW.png, or its name, "
+           "ZOOM-COLUMN-ROW.png, with rows counted from the north. Rename it so; gdal_edit.py or a world "
+           "file "
+           "places other pictures";
   return fmt::format(
       "has no georeference: where its posts are on the earth is not known. gdal_translate -a_srs EPSG:4326 "
       "-a_ullr WEST NORTH EAST SOUTH {} HEIGHTS.tif makes a copy that states it",
@@ -99,11 +165,53 @@ std::string remedyForTileWithoutPosition() {
          "N38E052.hgt";
 }
 
+std::string faultOfGridRow(const std::string& file, int columns) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string line;
+  constexpr int kMaxHeaderLines = 20;
+  for (int n = 0; n < kMaxHeaderLines && std::isalpha((stream >> std::ws).peek()) != 0; ++n) {
+    if (std::getline(stream, line); document::upperCase(line).rfind("NAN", 0) == 0) return "";
+  }
+  long long values = 0;
+  bool is_value = false;
+  for (std::streambuf* const bytes = stream.rdbuf(); bytes->sgetc() != EOF && bytes->sgetc() != '\n';) {
+    const bool is_blank = std::isspace(bytes->sbumpc()) != 0;
+    if (!is_blank && !is_value) ++values;
+    is_value = !is_blank;
+  }
+  // A line may be a part of a row, or several whole rows.
+  if (values <= columns || values % columns == 0) return "";
+  return fmt::format(
+      "its first row has {} values, but 'ncols' is {}: heights would be at wrong positions. "
+      "Write ncols {} if the file is whole",
+      values, columns, values);
+}
+
+std::string heightUnitBeside(const std::string& file) {
+  for (const char* const ending : {".prj", ".PRJ"}) {
+    std::ifstream stream(fs::path(file).replace_extension(ending));
+    for (std::string word; stream >> word;) {
+      if (document::upperCase(word) != "ZUNITS" || !(stream >> word)) continue;
+      const std::string unit = document::upperCase(word);
+      return unit == "FEET" ? "ft" : unit == "METERS" ? "m" : "";
+    }
+  }
+  return "";
+}
+
 bool webTileTransform(const std::string& file, int columns, int rows, double (&transform)[6]) {
   const fs::path path = fs::absolute(file).lexically_normal();
-  const long long zoom = wholeNumber(path.parent_path().parent_path().filename().string());
-  const long long column = wholeNumber(path.parent_path().filename().string());
-  const long long row = wholeNumber(path.stem().string());
+  std::string stem = path.stem().string();
+  if (const std::size_t scale = stem.rfind('@'); scale != std::string::npos) stem.resize(scale);  // 613@2x
+  long long zoom = wholeNumber(path.parent_path().parent_path().filename().string());
+  long long column = wholeNumber(path.parent_path().filename().string());
+  long long row = wholeNumber(stem);
+  const std::size_t first = stem.find_first_of("-_"), second = stem.find_first_of("-_", first + 1);
+  if (second < stem.size()) {
+    zoom = wholeNumber(stem.substr(0, first));
+    column = wholeNumber(stem.substr(first + 1, second - first - 1));
+    row = wholeNumber(stem.substr(second + 1));
+  }
   if (zoom < 0 || zoom > 24 || column < 0 || row < 0 || column >= 1LL << zoom || row >= 1LL << zoom)
     return false;
   constexpr double kHalf_m = kPi * 6378137.0;  // of the equator

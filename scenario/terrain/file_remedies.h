@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "base/geodesy/gdal.h"
 #include "scenario/terrain/file_names.h"
@@ -14,12 +15,25 @@ std::string faultOfUnreadable(const ElevationSource& source, bool is_picture);
 /// A file without a raster of its own, such as a netCDF file of several variables.
 std::string remedyForContainer(GDALDatasetH dataset, const ElevationSource& source);
 std::string remedyForPicture(int band, const std::string& colour, int bands);
-std::string remedyForNoGeoreference(const ElevationSource& source);
+/// @param is_tile  its colours encode heights, as those of web maps' tiles do
+std::string remedyForNoGeoreference(const ElevationSource& source, bool is_tile);
 /// @param is_plane  the coordinates are too large for degrees
 std::string remedyForNoSystem(bool is_plane);
 std::string remedyForTileWithoutPosition();
 
-/// The transform of a tile of a web map, by its path ZOOM/COLUMN/ROW.png, in EPSG:3857; false: it has none.
+/// Describes a beginning of a file that is something else than its name says: a web page, a pointer of Git
+/// LFS, a PDF; empty: none of these.
+std::string foreignContent(std::string_view beginning);
+std::string foreignContentOf(const std::string& file);
+
+/// The fault of an ASCII grid whose first row has more values than its header says; empty: none.
+std::string faultOfGridRow(const std::string& file, int columns);
+/// The unit of heights that the .prj of ArcInfo beside a raster states ("Zunits FEET"): "ft" or "m"; empty:
+/// none.
+std::string heightUnitBeside(const std::string& file);
+
+/// The transform of a tile of a web map in EPSG:3857, by its path ZOOM/COLUMN/ROW.png or its name
+/// ZOOM-COLUMN-ROW.png, with rows from the north; false: it has none.
 bool webTileTransform(const std::string& file, int columns, int rows, double (&transform)[6]);
 
 /// The number in EPSG:number.

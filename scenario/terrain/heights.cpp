@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "base/text/shell_word.h"
 #include "emscape/base/error.h"
 
 namespace emscape::scenario {
@@ -215,11 +216,17 @@ void setUnit(const HeightFacts& facts, const Stated& stated, HeightMeaning& mean
   if (of_band || stated.unit_m > 0) {
     meaning.unit = of_band ? facts.band_unit : stated.unit;
     meaning.unit_m = of_band ? metresNamed(facts.band_unit) : stated.unit_m;
+    if (meaning.unit_m == 0.0 && !key && meaning.unit.find("s**-2") != std::string::npos)
+      refuse(
+          fmt::format("is a geopotential ('{}'), not heights: gdal_translate -ot Float32 -a_scale 0.10197162 "
+                      "-a_offset 0 {} "
+                      "HEIGHTS.tif makes heights of it; then `height_unit: m` of that file states their unit",
+                      meaning.unit, shellWord(facts.own_name)));
     if (meaning.unit_m == 0.0 && !key)
       refuse(
           "heights are in '" + meaning.unit +
-          "', a unit that is not known; known are m, ft and US survey ft. `height_unit: m` (or ft, us_ft) of "
-          "the file in the scenario states it");
+          "', a unit that is not known; known are m, km, cm, ft and US survey ft. `height_unit: m` (or ft, "
+          "us_ft, dm, cm) of the file in the scenario states it");
     const bool differs = key && meaning.unit_m != 0.0 && std::abs(meaning.unit_m / metresOf(*key) - 1) > 1e-7;
     if (differs)
       refuse(fmt::format(

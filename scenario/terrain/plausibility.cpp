@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "scenario/terrain/file.h"
 
@@ -65,6 +66,14 @@ float withSwappedBytes(float value) {
   return static_cast<float>(static_cast<std::int16_t>(static_cast<std::uint16_t>(bits << 8U | bits >> 8U)));
 }
 
+float withSwappedBytesOfReal(float value) {
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  bits = bits << 24U | (bits & 0xFF00U) << 8U | (bits >> 8U & 0xFF00U) | bits >> 24U;
+  std::memcpy(&value, &bits, sizeof bits);
+  return value;
+}
+
 void HeightTally::addBeyond(double height_m, long long posts) {
   beyond_ += posts;
   lowest_m_ = std::min(lowest_m_, height_m);
@@ -85,6 +94,7 @@ void HeightTally::add(const HeightTally& other) {
   lowest_m_ = std::min(lowest_m_, other.lowest_m_);
   highest_m_ = std::max(highest_m_, other.highest_m_);
   posts_ += other.posts_;
+  tiny_ += other.tiny_;
   pairs_ += other.pairs_;
   steps_ += other.steps_;
   step_sum_ += other.step_sum_;
@@ -113,6 +123,10 @@ bool HeightTally::looksSwapped() const {
          step_sum_ > kMinRatio * swapped_step_sum_;
 }
 
+bool HeightTally::looksSwappedReal() const {
+  return static_cast<double>(tiny_) > kMaxShareBeyond * static_cast<double>(posts_);
+}
+
 std::vector<HeightTally::Value> HeightTally::fills() const {
   return values_.size() <= kMaxFillValues ? values_ : std::vector<Value>{};
 }
@@ -127,6 +141,14 @@ std::vector<Implausibility> implausibilitiesOf(const TerrainFile& file, const He
     all.push_back({true, fmt::format("its heights jump from post to post, and become smooth if the two bytes "
                                      "of each are exchanged: it is in the other byte order; {}",
                                      remedy)});
+    return all;
+  }
+  if (tally.looksSwappedReal()) {
+    all.push_back({true, fmt::format("its real numbers are nearly 0, below 1e-20, as the other byte order "
+                                     "makes of heights; {}",
+                                     file.keys().swap_bytes
+                                         ? "leave out `swap_bytes` of the file"
+                                         : "`swap_bytes: true` of the file in the scenario reads them so")});
     return all;
   }
   addBeyond(file, tally, all);

@@ -1,6 +1,7 @@
 /// Heights that cannot be right: not on earth, or of 16 bits in the other byte order.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -16,8 +17,9 @@ class TerrainFile;
 /// No ground or sea bed is beyond these heights (Challenger Deep -10,935 m, Mount Everest 8,849 m).
 constexpr double kLowestOnEarth_m = -11500, kHighestOnEarth_m = 9000;
 
-/// The number whose two bytes are those of a number of 16 bits, exchanged.
+/// The number whose bytes are those of a number of 16 bits, or of a real number of 32 bits, exchanged.
 float withSwappedBytes(float value);
+float withSwappedBytesOfReal(float value);
 
 /// What a file's heights look like, counted while they are read.
 class HeightTally {
@@ -34,6 +36,12 @@ class HeightTally {
   void addSteps(const std::vector<float>& values, const std::vector<std::uint8_t>& is_known,
                 std::size_t first, std::size_t count);
   void add(const HeightTally& other);
+  /// Counts a real number that no height is, as the other byte order makes of heights: not 0, but nearly.
+  void addReal(float value) {
+    if (value != 0 && std::abs(value) < kLeastReal) ++tiny_;
+  }
+  /// True if numbers are not heights in metres or any other unit, but such of the other byte order.
+  bool looksSwappedReal() const;
 
   /// True if the surface becomes smooth by exchanging the bytes of its heights.
   bool looksSwapped() const;
@@ -50,9 +58,10 @@ class HeightTally {
   double highest_m() const { return highest_m_; }
 
  private:
+  static constexpr float kLeastReal = 1e-20F;
   void addBeyond(double height_m, long long posts = 1);
 
-  long long posts_ = 0, beyond_ = 0;
+  long long posts_ = 0, beyond_ = 0, tiny_ = 0;
   double lowest_m_ = std::numeric_limits<double>::infinity();
   double highest_m_ = -std::numeric_limits<double>::infinity();
   std::vector<Value> values_;  ///< beyond, different ones; at most one more than fill values

@@ -252,6 +252,7 @@ class TerrainMosaic : public Terrain {
  private:
   void addSea();
   void addSurface(const TerrainSpec& spec, const GeoBox& box);
+  void requireSurface(const TerrainSpec& spec, const GeoBox& box) const;
   void survey(const std::vector<TerrainSheet>& sheets);
   void surveyPosts(const TerrainSheet& sheet);
   bool covered(const std::vector<TerrainSheet>& sheets, double latitude_deg, double longitude_deg) const;
@@ -271,6 +272,32 @@ class TerrainMosaic : public Terrain {
   TerrainPtr surface_;
 };
 
+/// Refuses a surface model that is far below or above the ground.
+void TerrainMosaic::requireSurface(const TerrainSpec& spec, const GeoBox& box) const {
+  constexpr int kSide = 40;
+  constexpr double kMaxBelow_m = 2, kMaxAbove_m = 100;  // the highest clutter of classes
+  std::vector<double> above_m;
+  for (int n = 0; n < kSide * kSide; ++n) {
+    const double latitude_deg = box.south_deg + (n / kSide + 0.5) / kSide * (box.north_deg - box.south_deg);
+    const double longitude_deg = box.west_deg + (n % kSide + 0.5) / kSide * (box.east_deg - box.west_deg);
+    const double difference_m =
+        surface_->heightMsl_m(latitude_deg, longitude_deg) - heightMsl_m(latitude_deg, longitude_deg);
+    if (!std::isnan(difference_m)) above_m.push_back(difference_m);
+  }
+  if (above_m.empty()) return;
+  std::nth_element(above_m.begin(), above_m.begin() + static_cast<std::ptrdiff_t>(above_m.size() / 2),
+                   above_m.end());
+  const double median_m = above_m[above_m.size() / 2];
+  if (median_m >= -kMaxBelow_m && median_m <= kMaxAbove_m) return;
+  throw Error(
+      ErrorCode::bad_input,
+      spec.surface_locations.empty() ? SourceLocation{} : spec.surface_locations.front(),
+      fmt::format("the surface model ('surface_files') is {:.4g} m {} the ground ('files'; median): the "
+                  "two are exchanged, or it has heights above the ground, or its unit ('height_unit') or "
+                  "datum ('vertical_datum') is another one",
+                  std::abs(median_m), median_m < 0 ? "below" : "above"));
+}
+
 void TerrainMosaic::addSurface(const TerrainSpec& spec, const GeoBox& box) {
   TerrainSpec surface;
   surface.files = spec.surface_files;
@@ -282,6 +309,7 @@ void TerrainMosaic::addSurface(const TerrainSpec& spec, const GeoBox& box) {
     if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end())
       warnings_.push_back(warning);
   }
+  requireSurface(spec, box);
   if (surface_->uncoveredFraction() > 0)
     warnings_.push_back(fmt::format(
         "terrain: the surface model ('surface_files') leaves {:.3g} % of the area out: there the height of "

@@ -86,6 +86,11 @@ double Blockage::axis_msl_m(double slant_m) const {
   return std::hypot(slant_m * std::cos(angle), from + slant_m * std::sin(angle)) - effective_earth_radius_m;
 }
 
+double Blockage::ground_m(double slant_m) const {
+  const double from = effective_earth_radius_m + station_msl_m, angle = degToRad(elevation_deg);
+  return effective_earth_radius_m * std::atan2(slant_m * std::cos(angle), from + slant_m * std::sin(angle));
+}
+
 int Blockage::gateAt(double ground_m) const {
   const double angle = ground_m / effective_earth_radius_m;
   const double cosine = std::cos(angle + degToRad(elevation_deg));

@@ -56,6 +56,8 @@ struct Blockage {
   double gate_m(int index) const { return (index + 0.5) * request.step_m; }  ///< middle, along the beam
   /// Height of the beam's axis at a distance along it, on the effective earth.
   double axis_msl_m(double slant_m) const;
+  /// Distance over the ground, at mean sea level, below a distance along the beam.
+  double ground_m(double slant_m) const;
   /// Gate above a point of the ground; -1: beyond the last, or below the horizon of the beam.
   int gateAt(double ground_m) const;
 };
@@ -73,5 +75,8 @@ BlockageMap mapOf(const Blockage& blockage);
 render::Image8 drawBlockage(const Blockage& blockage, int width);
 /// Rows of azimuth and range. Written as a whole.
 void writeBlockageCsv(const Blockage& blockage, const std::string& file);
+/// Arrays over azimuth and range with the positions of the gates (netCDF, CF conventions). Written as a
+/// whole.
+void writeBlockageNetcdf(const Blockage& blockage, const std::string& file);
 
 }  // namespace emscape::study

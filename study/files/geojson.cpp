@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
@@ -26,6 +28,67 @@ OrderedJson placeJson(double longitude_deg, double latitude_deg) {
 }
 OrderedJson pointJson(const MapPosition& at) {
   return {{"type", "Point"}, {"coordinates", placeJson(at.position.longitude_deg, at.position.latitude_deg)}};
+}
+
+using Ring =
+    std::vector<std::array<double, 2>>;  ///< longitudes and latitudes (deg); the last point is the first
+
+/// Outer rings run counterclockwise, holes clockwise.
+OrderedJson polygonJson(const std::vector<Ring>& rings) {
+  OrderedJson json = OrderedJson::array();
+  for (Ring ring : rings) {
+    double twice_area = 0;
+    for (std::size_t n = 1; n < ring.size(); ++n)
+      twice_area += ring[n - 1][0] * ring[n][1] - ring[n][0] * ring[n - 1][1];
+    if ((twice_area > 0) != json.empty()) std::reverse(ring.begin(), ring.end());
+    OrderedJson list = OrderedJson::array();
+    for (const auto& [x, y] : ring) list.push_back(placeJson(x, y));
+    json.push_back(list);
+  }
+  return json;
+}
+
+gdal::Geometry geometryOf(const std::vector<Ring>& rings) {
+  gdal::Geometry polygon(OGR_G_CreateGeometry(wkbPolygon));
+  for (const Ring& ring : rings) {
+    OGRGeometryH outline = OGR_G_CreateGeometry(wkbLinearRing);
+    for (const auto& [x, y] : ring) OGR_G_SetPoint_2D(outline, OGR_G_GetPointCount(outline), x, y);
+    OGR_G_AddGeometryDirectly(polygon.get(), outline);
+  }
+  return polygon;
+}
+
+void addPolygons(OGRGeometryH geometry, double shift_deg, std::vector<std::vector<Ring>>& parts) {
+  const OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(geometry));
+  const int count = OGR_G_GetGeometryCount(geometry);
+  if (type == wkbMultiPolygon || type == wkbGeometryCollection) {
+    for (int n = 0; n < count; ++n) addPolygons(OGR_G_GetGeometryRef(geometry, n), shift_deg, parts);
+  }
+  if (type != wkbPolygon || count == 0) return;
+  parts.emplace_back();
+  for (int n = 0; n < count; ++n) {
+    OGRGeometryH outline = OGR_G_GetGeometryRef(geometry, n);
+    Ring ring;
+    for (int k = 0; k < OGR_G_GetPointCount(outline); ++k)
+      ring.push_back({OGR_G_GetX(outline, k) + shift_deg, OGR_G_GetY(outline, k)});
+    parts.back().push_back(std::move(ring));
+  }
+}
+
+/// The parts of a polygon within -180 to 180 degrees of longitude (RFC 7946, 3.1.9).
+std::vector<std::vector<Ring>> withinOneTurn(const std::vector<Ring>& rings) {
+  constexpr double kTurn_deg = 360, kHalf_deg = 180;
+  const auto isWithin = [](const std::array<double, 2>& at) { return std::abs(at[0]) <= kHalf_deg; };
+  if (std::all_of(rings.front().begin(), rings.front().end(), isWithin)) return {rings};
+  std::vector<std::vector<Ring>> parts;
+  const gdal::Geometry polygon = geometryOf(rings);
+  for (const double turn_deg : {-kTurn_deg, 0.0, kTurn_deg}) {
+    const double west = turn_deg - kHalf_deg, east = turn_deg + kHalf_deg;
+    const gdal::Geometry zone = geometryOf({{{west, -90}, {east, -90}, {east, 90}, {west, 90}, {west, -90}}});
+    const gdal::Geometry part(OGR_G_Intersection(polygon.get(), zone.get()));
+    if (part != nullptr) addPolygons(part.get(), -turn_deg, parts);
+  }
+  return parts.empty() ? std::vector<std::vector<Ring>>{rings} : parts;
 }
 
 class GeoJson : public MapCollection {
@@ -121,32 +184,28 @@ class GeoJson : public MapCollection {
     }
   }
 
-  /// Outer rings run counterclockwise, holes clockwise; the last point is the first.
-  OrderedJson outlineJson(OGRGeometryH ring, bool is_outer) const {
-    std::vector<std::array<double, 2>> points;
-    double twice_area = 0;
-    for (int n = 0; n < OGR_G_GetPointCount(ring); ++n) {
-      double x = OGR_G_GetX(ring, n), y = OGR_G_GetY(ring, n);
+  /// A ring without a step of a turn. @param near_deg  longitude within half a turn of its first point
+  Ring ringOf(OGRGeometryH outline, std::optional<double> near_deg) const {
+    Ring ring;
+    for (int n = 0; n < OGR_G_GetPointCount(outline); ++n) {
+      double x = OGR_G_GetX(outline, n), y = OGR_G_GetY(outline, n);
       OCTTransform(to_earth_.get(), 1, &x, &y, nullptr);
-      if (!points.empty()) {
-        x = points.back()[0] + wrapLongitude_deg(x - points.back()[0]);
-        twice_area += points.back()[0] * y - x * points.back()[1];
-      }
-      points.push_back({x, y});
+      if (!ring.empty()) near_deg = ring.back()[0];
+      if (near_deg) x = *near_deg + wrapLongitude_deg(x - *near_deg);
+      ring.push_back({x, y});
     }
-    if ((twice_area > 0) != is_outer) std::reverse(points.begin(), points.end());
-    OrderedJson list = OrderedJson::array();
-    for (const auto& [x, y] : points) list.push_back(placeJson(x, y));
-    return list;
+    return ring;
   }
   OrderedJson shapeJson(OGRGeometryH shape) const {
     OrderedJson polygons = OrderedJson::array();
     for (int p = 0; p < OGR_G_GetGeometryCount(shape); ++p) {
       OGRGeometryH polygon = OGR_G_GetGeometryRef(shape, p);
-      OrderedJson rings = OrderedJson::array();
-      for (int n = 0; n < OGR_G_GetGeometryCount(polygon); ++n)
-        rings.push_back(outlineJson(OGR_G_GetGeometryRef(polygon, n), n == 0));
-      polygons.push_back(rings);
+      std::vector<Ring> rings;
+      for (int n = 0; n < OGR_G_GetGeometryCount(polygon); ++n) {
+        const auto near_deg = n == 0 ? std::nullopt : std::optional(rings.front().front()[0]);
+        rings.push_back(ringOf(OGR_G_GetGeometryRef(polygon, n), near_deg));
+      }
+      for (const std::vector<Ring>& part : withinOneTurn(rings)) polygons.push_back(polygonJson(part));
     }
     return {{"type", "MultiPolygon"}, {"coordinates", polygons}};
   }

@@ -353,24 +353,6 @@ std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot) {
   return markers;
 }
 
-std::vector<render::Category> groundClassesOf(const MapGrid& grid, const scenario::LandCover& cover) {
-  std::vector<bool> occurs(cover.classes().size());
-  for (const emfield::Surface::Position& at : grid.positions) {
-    const int found = std::isnan(at.latitude_deg) ? -1 : cover.classAt(at.latitude_deg, at.longitude_deg);
-    if (found >= 0) occurs[static_cast<std::size_t>(found)] = true;
-  }
-  std::vector<render::Category> classes;
-  for (std::size_t c = 0; c < occurs.size(); ++c) {
-    const scenario::CoverClass& of = cover.classes()[c];
-    const bool is_listed = std::any_of(classes.begin(), classes.end(),
-                                       [&](const render::Category& known) { return known.name == of.name; });
-    if (!occurs[c] || is_listed) continue;
-    const auto part = [&](int shift) { return static_cast<float>(of.color >> shift & 255U) / 255; };
-    classes.push_back({0, of.name, Rgb{part(0), part(8), part(16)}});
-  }
-  return classes;
-}
-
 int refinementOf(const MapGrid& grid, int picture_width) {
   constexpr double kSquare_px = 2;  // a smaller one is not seen
   return std::clamp(static_cast<int>(picture_width / kSquare_px / std::max(grid.width, grid.height)), 1, 16);

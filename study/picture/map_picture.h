@@ -49,9 +49,6 @@ struct MapPictureOptions {
 /// The active emitters of an instant, and the platforms that have a side but no emitter.
 std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot);
 
-/// The classes of the land cover that occur on a grid, those of one name once.
-std::vector<render::Category> groundClassesOf(const MapGrid& grid, const scenario::LandCover& cover);
-
 /// Squares of the ground along a pixel with which a picture of this width has as much relief as it can show.
 int refinementOf(const MapGrid& grid, int picture_width);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/files/folder.h"
@@ -16,6 +17,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "playback/frames/ground.h"
 #include "render/picture/png_comment.h"
 #include "study/files/czml.h"
 #include "study/files/geojson.h"
@@ -140,8 +142,13 @@ struct MapFolder::State {
     const MapGrid& squares = finer ? *finer : grid;
     if (has_drape) background.drape = drapeOf(squares, study.view.drape, study.terrain.get());
     if (study.view.drape == scenario::kLandCoverDrape && study.terrain &&
-        study.terrain->landCover() != nullptr)
-      background.ground_classes = groundClassesOf(grid, *study.terrain->landCover());
+        study.terrain->landCover() != nullptr) {
+      std::vector<GeodeticPosition> positions;
+      for (const auto& [latitude_deg, longitude_deg] : grid.positions) {
+        if (!std::isnan(latitude_deg)) positions.push_back({latitude_deg, longitude_deg, 0});
+      }
+      background.ground_classes = playback::groundClassesOf(*study.terrain->landCover(), positions);
+    }
     if (study.terrain != nullptr) {
       background.ground_msl_m = groundOf(squares, *study.terrain);
     } else {

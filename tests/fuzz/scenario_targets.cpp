@@ -169,7 +169,9 @@ const FuzzTargetsAdded added({
      [](const fs::path& file, const std::string&) { scenario::readPointTable(file); },
      [] {
        return std::vector<std::string>{"name,latitude_deg,longitude_deg,owner\nhill,52.5,5.25,A\n",
-                                       "Name;Lat;Lon\nhill;52,5;5,25\n", "lat\tlon\n52.5\t5.25\n"};
+                                       "Name;Lat;Lon\nhill;52,5;5,25\n", "lat\tlon\n52.5\t5.25\n",
+                                       "name,mgrs,height_agl_m\nhill,16S GF 50751 44164,30\n",
+                                       "lat;lon\n36d30'36\"N;84 12 0 W\n"};
      }},
     {"antenna_msi", "input.msi",
      [](const fs::path& file, const std::string&) {
@@ -211,7 +213,9 @@ const FuzzTargetsAdded added({
            "  925.0    780   22.4   10.4     47   8.65\n\nStation latitude: 39.5\nStation longitude: -84.2\n",
            "time,longitude,latitude,pressure_hPa,geopotential height_m,temperature_C,dew point "
            "temperature_C,relative humidity_%\n2020-07-02 11:02:03,-84.25,39.5,998.0,112,25.0,20.0,74\n"
-           "2020-07-02 11:12:03,-84.25,39.5,850.0,1500,18.0,,39\n"};
+           "2020-07-02 11:12:03,-84.25,39.5,850.0,1500,18.0,,39\n",
+           "%TITLE%\n OAX   200702/1200\n\n LEVEL HGHT TEMP DWPT WDIR WSPD\n-----\n%RAW%\n 955.00, 520.00, "
+           "22.00, 18.00, 90.00, 10.00\n 925.62, 770.00, 20.38, -9999.00, 90.00, 10.00\n%END%\n"};
      }},
 });
 

@@ -41,6 +41,77 @@ TEST(TablesOfOthers, Flightradar24HasOneColumnOfCoordinatesAndFeet) {
   EXPECT_THAT(r.tally.notes, Contains(HasSubstr("taken as feet (2 times)")));
 }
 
+TEST(TablesOfOthers, OneColumnOfCoordinatesAloneIsNotFlightradar24) {
+  const Recording r = readAs("a.csv",
+                             "Date,Time,LatLon,Height\n2026-06-01,06:00:00,\"-33.45 -70.55\",3000\n"
+                             "2026-06-01,06:00:10,\"-33.449 -70.549\",3090\n");
+  ASSERT_THAT(r.objects, SizeIs(1));
+  EXPECT_EQ(r.objects[0].poses.at(1).height_msl_m, 3090);
+}
+
+TEST(TablesOfOthers, AColumnThatIsNamedKeepsTheUnitOfItsName) {
+  const Recording r =
+      readAs("a.csv",
+             "time (us),lat (rad),lon (rad),OSD.altitude [ft]\n0,0.5,0.1,1000\n"
+             "10000000,0.5001,0.1,2000\n20000000,0.5002,0.1,3000\n",
+             "time=time (us),latitude=lat (rad),longitude=lon (rad),height=OSD.altitude [ft]");
+  const auto& poses = r.objects.at(0).poses;
+  EXPECT_DOUBLE_EQ(poses.at(2).t_s, 20);
+  EXPECT_NEAR(poses.at(0).latitude_deg, 28.6478898, 1e-6);
+  EXPECT_DOUBLE_EQ(poses.at(0).height_msl_m, 304.8);
+  const Recording told = readAs("b.csv", "time,lat,lon,alt (ft)\n0,52,5,1000\n9,52.01,5,1000\n",
+                                "time=time,latitude=lat,longitude=lon,height=alt (ft):m");
+  EXPECT_EQ(told.objects.at(0).poses.at(0).height_msl_m, 1000) << "the option says another one";
+}
+
+TEST(TablesOfOthers, GarminAvionicsWriteLocalTimesWithTheirOffsetAndUnitsInAComment) {
+  const Recording r =
+      readAs("a.csv",
+             "#airframe_info, log_version=\"1.00\"\n#yyy-mm-dd, hh:mm:ss, hh:mm, degrees, degrees, ft msl\n"
+             "  Lcl Date, Lcl Time, UTCOfst, Latitude, Longitude, AltMSL\n"
+             "2026-06-01, 02:00:00, -04:00, -33.45, -70.55, 10000\n"
+             "2026-06-01, 02:00:10, -04:00, -33.449, -70.549, 10100\n");
+  EXPECT_EQ(r.epoch_ms, kSix_ms);
+  EXPECT_NEAR(r.objects.at(0).poses.at(1).height_msl_m, 10100 * 0.3048, 1e-9);
+}
+
+TEST(TablesOfOthers, MicrosecondsTakenAsSecondsAreTold) {
+  const Recording r = readAs("a.csv",
+                             "timestamp,lat,lon,alt_m\n123456789,52,5,1\n133456789,52.001,5,1\n"
+                             "143456789,52.002,5,1\n153456789,52.003,5,1\n");
+  EXPECT_THAT(r.tally.notes, Contains(HasSubstr("time=timestamp:us")));
+  const Recording us = readAs("b.csv",
+                              "timestamp,lat,lon,alt_m\n123456789,52,5,1\n133456789,52.001,5,1\n"
+                              "143456789,52.002,5,1\n",
+                              "time=timestamp:us");
+  EXPECT_NEAR(us.objects.at(0).poses.back().t_s - us.objects.at(0).poses.front().t_s, 20, 1e-6);
+}
+
+TEST(TablesOfOthers, RowsWithMoreCellsThanTheHeaderAreBad) {
+  const std::string problem = errorOf("a.csv", "time,lat,lon,alt_m\n0,52,1,13,4,100\n10,52,2,13,4,100\n");
+  EXPECT_THAT(problem, HasSubstr("it has 6 cells, the header 4; are decimals written with commas"));
+  EXPECT_THAT(readAs("b.csv", "time,lat,lon,alt_m\n0,52,1,100,,\n10,52.01,1,100,,\n").objects, SizeIs(1))
+      << "empty cells at the end";
+}
+
+TEST(TablesOfOthers, NamesInOtherEncodingsStayApart) {
+  const std::string rows =
+      "time,name,lat,lon,alt_m\n0,\xC1\xEE\xF0\xF2,52,5,1\n0,\xCA\xF0\xE0\xED,52.5,5,1\n"
+      "9,\xC1\xEE\xF0\xF2,52.001,5,1\n9,\xCA\xF0\xE0\xED,52.501,5,1\n";
+  const Recording table = readAs("a.csv", rows);
+  EXPECT_THAT(table.objects, SizeIs(2));
+  EXPECT_THAT(table.tally.notes, Contains(HasSubstr("iconv -f ENCODING -t UTF-8")));
+  const std::string gpx =
+      "<gpx version=\"1.1\"><trk><name>\xC1\xEE\xF0\xF2</name><trkseg><trkpt lat=\"52\" lon=\"5\">"
+      "<time>2026-06-01T06:00:00Z</time></trkpt><trkpt lat=\"52.01\" lon=\"5\"><time>2026-06-01T06:00:10Z"
+      "</time></trkpt></trkseg></trk></gpx>";
+  EXPECT_EQ(readAs("a.gpx", "<?xml version=\"1.0\" encoding=\"windows-1251\"?>" + gpx).objects.at(0).name,
+            "Борт");
+  EXPECT_EQ(readAs("b.gpx", "<?xml version=\"1.0\" encoding=\"iso-8859-1\"?>" + gpx).objects.at(0).name,
+            "Áîðò");
+  EXPECT_THAT(readAs("c.gpx", gpx).tally.notes, Contains(HasSubstr("taken as Latin-1")));
+}
+
 TEST(TablesOfOthers, BaseStationHasNoNames) {
   const Recording r = readAs(
       "a.csv",

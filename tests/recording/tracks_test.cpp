@@ -173,6 +173,15 @@ TEST(Kml, TrackWithoutATimeForEachPositionIsCounted) {
   EXPECT_THAT(r.tally.first_bad, HasSubstr("a: a track of 1 times and 0 positions"));
 }
 
+TEST(Tracks, NmeaOfTwoReceiversIsToldAndHeightsInFeetAreConverted) {
+  const Recording r = readAs("a.nmea",
+                             "$GPGGA,060000,3327.000,S,07033.000,W,1,08,1,10000,F,,,,\n"
+                             "$GLGGA,060000,3327.600,S,07033.000,W,1,08,1,10000,F,,,,\n"
+                             "$GPGGA,060010,3326.940,S,07032.940,W,1,08,1,10000,F,,,,\n");
+  EXPECT_NEAR(r.objects.at(0).poses.at(0).height_msl_m, 3048, 1e-9);
+  EXPECT_THAT(r.tally.notes, testing::Contains(HasSubstr("at two places, as of two receivers")));
+}
+
 TEST(Nmea, SentencesOfOneTimeAreOneFix) {
   const Recording r = readAs("ship.nmea",
                              "$GPGGA,235958,5200.000,N,00500.000,E,1,8,1.0,12.5,M,46.0,M,,\r\n"

@@ -155,6 +155,13 @@ TEST_F(LandCoverFiles, HaveTheClassesOfATableOfOnesOwn) {
   EXPECT_EQ(cover.classes()[1].color, 0xFFFF0000U);
 }
 
+TEST_F(LandCoverFiles, TablesOfSpreadsheetsHaveSemicolonsAndDecimalCommas) {
+  const std::vector<CoverClass> classes = readCoverTable(
+      writeTable("code;name;clutter_height_m;zone;land;color\n1;palms;7,5;land;woods;#00ff00\n"));
+  ASSERT_EQ(classes.size(), 1u);
+  EXPECT_EQ(classes[0].clutter_height_m, 7.5);
+}
+
 TEST_F(LandCoverFiles, TablesWithFaultsNameTheirPlaceAndRange) {
   const std::string header = "code,name,clutter_height_m,zone,land,color\n";
   const std::pair<std::string, std::string> kCases[] = {
@@ -209,6 +216,19 @@ TEST_F(TerrainWithCover, HasTheHeightOfTheSurfaceModelAsClutterAndNoNegativeOne)
   const TerrainPtr terrain = Terrain::load(spec, kBox);
   EXPECT_FLOAT_EQ(coverAt(*terrain, kBorder_deg - 0.05), 12.5F);
   EXPECT_EQ(coverAt(*terrain, kBorder_deg + 0.05), 0);
+}
+
+TEST_F(TerrainWithCover, RefusesASurfaceModelThatIsNone) {
+  TerrainSpec spec = ground(500);
+  spec.surface_files = {folder_ / "surface.tif"};
+  for (const double surface_m : {20.0, 480.0, 1700.0}) {
+    test::geographicDem(-84.6, 36.8, 0.01, 80, 80, [&](double, double) {
+      return surface_m;
+    }).write(folder_ / "surface.tif");
+    EXPECT_THAT(test::errorOf([&] { Terrain::load(spec, kBox); }, ErrorCode::bad_input),
+                HasSubstr("the surface model ('surface_files') is"))
+        << surface_m;
+  }
 }
 
 TEST(TerrainProfileWithCover, TellsTheSeaAndClutterByItAndByHeightsWhereItIsUnknown) {

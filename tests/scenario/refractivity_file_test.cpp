@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "tests/scenario/dem_file.h"
 #include "tests/support/errors.h"
 #include "tests/support/temporary_folder.h"
 
@@ -174,6 +175,24 @@ TEST_F(Soundings, HoldTheRefractivityOfTheirLevels) {
   EXPECT_TRUE(isSoundingFile(folder_.write("s.txt", kChanhassen)));
 }
 
+TEST_F(Soundings, OfTheStormPredictionCenterAreRead) {
+  const std::string text =
+      "%TITLE%\n SCSN   231118/0000 \n\n   LEVEL       HGHT       TEMP       DWPT       WDIR       WSPD\n"
+      "-------------------------------------------------------------------\n%RAW%\n"
+      " 1000.00,    100.00,  -9999.00,  -9999.00,  -9999.00,  -9999.00\n"
+      " 955.00,    520.00,     22.00,      18.00,    90.00,     10.00\n"
+      " 897.14,    1020.00,     18.75,      14.75,    90.00,     10.00\n%END%\n";
+  const RefractivityFile read = sounding(text);
+  EXPECT_THAT(read.description, HasSubstr("SCSN, 2023-11-18T00:00:00Z (2 of 3 levels"));
+  // 955 hPa, 22 C, dew point 18 C: vapour 20.64 hPa, N = 77.6 / 295.15 (955 + 4810 * 20.64 / 295.15) = 339.5.
+  EXPECT_NEAR(read.field.profiles.at(0).levels.front().m_units, 339.5 + 0.15696 * 520, 0.3);
+  EXPECT_TRUE(isSoundingFile(folder_.write("s.spc", text)));
+  EXPECT_THAT(soundingError("%TITLE%\n SCSN 2023-11-18\n%RAW%\n"),
+              HasSubstr("station.txt:2:1: expected a station and a time below %TITLE%"));
+  EXPECT_THAT(soundingError("%TITLE%\n SCSN 231118/0000\n%RAW%\n955,520\n%END%\n"),
+              HasSubstr("station.txt:4:1: expected LEVEL, HGHT, TEMP, DWPT"));
+}
+
 TEST_F(Soundings, TakeTheDewPointWhereTheHumidityIsMissing) {
   std::string without = kChanhassen;
   without.replace(without.find("  350   143"), 5, "-9999");
@@ -260,6 +279,28 @@ TEST_F(Soundings, AreReadFromListsOfWyoming) {
   text = kList;
   text.replace(text.find("12Z 02 Jul 2020"), 15, "12Z 02 Brumaire");
   EXPECT_THAT(soundingError(text), HasSubstr("expected a time such as 12Z 02 Jul 2020"));
+}
+
+TEST_F(Soundings, AreReadFromArchivesAsTheyAreDownloaded) {
+  const std::string text = folder_.write("USM00072649-data.txt", kChanhassen);
+  test::writeZip(folder_ / "USM00072649-data.txt.zip", {{"USM00072649-data.txt", text}});
+  test::writeGzip(text, folder_ / "USM00072649-data.txt.gz");
+  for (const char* packed : {"USM00072649-data.txt.zip", "USM00072649-data.txt.gz"}) {
+    EXPECT_TRUE(isSoundingFile(folder_ / packed)) << packed;
+    EXPECT_THAT(readSounding(folder_ / packed, kMidnight_ms).description, HasSubstr("2023-11-18T00:00:00Z"))
+        << packed;
+  }
+}
+
+TEST_F(Soundings, WhoseColumnsContradictEachOtherAreRefused) {
+  std::string text = kList;
+  for (const auto& [from, to] : {std::pair("25.0   20.0", "20.0   25.0"), {" 18.0    4.0", "  4.0   18.0"}})
+    text.replace(text.find(from), std::string(from).size(), to);
+  EXPECT_THAT(soundingError(text), HasSubstr("the dew point is above the temperature on 2 of 2 levels"));
+  text = kList;
+  for (const auto& [from, to] : {std::pair("   112 ", "   367 "), {"  1500 ", "  4921 "}})
+    text.replace(text.find(from), std::string(from).size(), to);
+  EXPECT_THAT(soundingError(text), HasSubstr("are the heights in feet?"));
 }
 
 TEST_F(Soundings, AreReadFromCsvOfWyoming) {

@@ -352,6 +352,84 @@ TEST_F(TerrainNames, TileOfAWebMapIsPlacedByItsPath) {
   EXPECT_EQ(terrain->uncoveredFraction(), 0);
 }
 
+TEST_F(TerrainNames, TileOfAWebMapIsPlacedByItsName) {
+  test::writeColours(folder_ / "a.tif", [](int, int) { return std::lround((700.0 + 32768) * 256); });
+  TerrainFileKeys keys;
+  keys.encoding = HeightEncoding::terrarium;
+  for (const char* name : {"8-135-87.png", "8_135_87.png", "8-135-87@2x.png", "other.png"}) {
+    test::convertDem(folder_ / "a.tif", "PNG", folder_ / name);
+    fs::remove(folder_ / (std::string(name) + ".aux.xml"));
+    if (std::string(name) == "other.png") {
+      EXPECT_THAT(problemOf(folder_ / name, keys), HasSubstr("ZOOM-COLUMN-ROW.png"));
+    } else {
+      EXPECT_EQ(load({folder_ / name}, keys)->uncoveredFraction(), 0) << name;
+    }
+  }
+}
+
+TEST_F(TerrainNames, TablesOfPointsAreSortedByTheCommandOfTheMessage) {
+  const auto height = [](double latitude_deg, double longitude_deg) {
+    return 100 * longitude_deg + 10 * latitude_deg;
+  };
+  std::string latitude_first = "# survey\nlat,lon,height\n", shuffled, commented = "# x y z\n";
+  for (int n = 0; n < 121; ++n) {
+    const int k = (n * 37) % 121;
+    const auto row = [&](int of, const char* separator, bool has_latitude_first) {
+      const double latitude_deg = 50 - 0.1 * (of / 11), longitude_deg = 10 + 0.1 * (of % 11);
+      return fmt::format("{:.1f}{}{:.1f}{}{}\n", has_latitude_first ? latitude_deg : longitude_deg, separator,
+                         has_latitude_first ? longitude_deg : latitude_deg, separator,
+                         height(latitude_deg, longitude_deg));
+    };
+    latitude_first += row(n, ",", true);
+    shuffled += row(k, " ", false);
+    commented += row(n, "\t", false);
+  }
+  TerrainFileKeys keys;
+  keys.crs = "EPSG:4326";
+  for (const auto& [text, name] : {std::pair(latitude_first, "latitude.xyz"),
+                                   {shuffled, "shuffled.xyz"},
+                                   {commented, "commented.xyz"}}) {
+    const std::string file = folder_.write(name, text);
+    const std::string problem = problemOf(file, keys);
+    const std::size_t begin = problem.find("awk "), end = problem.find(" sorts its rows");
+    ASSERT_LT(end, problem.size()) << problem;
+    std::string command = problem.substr(begin, end - begin);
+    if (name == std::string("latitude.xyz")) command.replace(command.find("$1,$2"), 5, "$2,$1");
+    if (!run("(" + command + ")")) GTEST_SKIP() << "gdal_translate is not installed";
+    EXPECT_NEAR(load({folder_ / "HEIGHTS.xyz"}, keys)->heightMsl_m(49.55, 10.45), height(49.55, 10.45), 1e-3)
+        << name;
+  }
+}
+
+TEST_F(TerrainNames, GeopotentialBecomesHeightsByTheCommandOfTheMessage) {
+  test::DemFile file = test::geographicDem(10, 50, 0.1, 10, 10, [](double, double) { return 500 * 9.80665; });
+  file.unit = "m**2 s**-2";
+  file.write(folder_ / "a.tif");
+  const std::string problem = problemOf(folder_ / "a.tif");
+  const std::size_t begin = problem.find("gdal_translate"), end = problem.find(" makes heights");
+  ASSERT_LT(end, problem.size()) << problem;
+  if (!run(problem.substr(begin, end - begin))) GTEST_SKIP() << "gdal_translate is not installed";
+  TerrainFileKeys keys;
+  keys.height_unit = HeightUnit::m;
+  EXPECT_NEAR(load({folder_ / "HEIGHTS.tif"}, keys)->heightMsl_m(49.5, 10.5), 500, 0.01);
+}
+
+TEST_F(TerrainNames, WhatWasDownloadedInPlaceOfHeightsIsNamed) {
+  const std::string page = "\n<!DOCTYPE html>\n<html><body>Log in</body></html>\n";
+  for (const char* name : {"a.tif", "N49E010.hgt", "a.zip"})
+    EXPECT_THAT(problemOf(folder_.write(name, page)), HasSubstr(std::string(name) + ": is a web page"))
+        << name;
+  EXPECT_THAT(problemOf(folder_.write("b.tif", "version https://git-lfs.github.com/spec/v1\nsize 7\n")),
+              HasSubstr("is a pointer of Git LFS"));
+  EXPECT_THAT(problemOf(folder_.write("c.tif", "%PDF-1.4\n")), HasSubstr("is a PDF document"));
+}
+
+TEST_F(TerrainNames, LatitudesOfTilesMayHaveThreeDigits) {
+  ASSERT_TRUE(cornerInName("ALPSMLC30_N034E135_DSM.tif"));
+  EXPECT_EQ(cornerInName("N034E135_AVE_DSM.tif")->latitude_deg, 34);
+  EXPECT_EQ(cornerInName("S34W071.hgt")->latitude_deg, -34);
+}
+
 TEST_F(TerrainNames, TilesOutsideTheBoxAreNotOpened) {
   tile("N49E010.hgt");
   std::ofstream(folder_ / "N20E100.hgt") << "broken";

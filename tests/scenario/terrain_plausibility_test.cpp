@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <string>
 #include <vector>
@@ -70,6 +71,51 @@ TEST_F(ImplausibleTerrain, OtherByteOrderIsRefusedWithTheKeyThatReadsIt) {
   test::writeHgt(file, 1201, [](int column, int) { return 250 + column / 12; });
   EXPECT_THAT(problemOf(file, keys), HasSubstr("leave out `swap_bytes`"));
   EXPECT_NEAR(load(file)->heightMsl_m(49.5, 10.5), 300, 0.1);
+}
+
+TEST_F(ImplausibleTerrain, RealNumbersInTheOtherByteOrderAreRefusedWithTheKeyThatReadsThem) {
+  std::string bytes;
+  for (int n = 0; n < 121 * 121; ++n) {
+    const auto height_m = static_cast<float>(250 + n % 121);
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &height_m, sizeof bits);
+    for (const unsigned shift : {24U, 16U, 8U, 0U}) bytes += static_cast<char>(bits >> shift & 0xFFU);
+  }
+  folder_.write("a.hdr",
+                "ncols 121\nnrows 121\nxllcenter 10\nyllcenter 49\ncellsize 0.00833333333\nbyteorder "
+                "LSBFIRST\n");
+  folder_.write("a.prj",
+                "GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
+                "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]");
+  const std::string file = folder_.write("a.flt", bytes);
+  EXPECT_THAT(problemOf(file), AllOf(HasSubstr("nearly 0"), HasSubstr("`swap_bytes: true`")));
+  TerrainFileKeys keys;
+  keys.swap_bytes = true;
+  EXPECT_NEAR(load(file, keys)->heightMsl_m(49.5, 10.5), 310, 0.1);
+}
+
+TEST_F(ImplausibleTerrain, GridWhoseRowsAreLongerThanItsHeaderSaysIsRefused) {
+  const auto grid = [&](int ncols) {
+    std::string text = fmt::format(
+        "ncols {}\nnrows 100\nxllcorner 10\nyllcorner 49\ncellsize 0.01\nNODATA_value -9999\n", ncols);
+    for (int row = 0; row < 100; ++row) {
+      for (int column = 0; column < 100; ++column) text += fmt::format("{} ", 100 + column);
+      text += "\n";
+    }
+    return folder_.write("a.asc", text);
+  };
+  TerrainFileKeys keys;
+  keys.crs = "EPSG:4326";
+  EXPECT_THAT(problemOf(grid(93), keys), HasSubstr("has 100 values, but 'ncols' is 93"));
+  EXPECT_NEAR(load(grid(100), keys)->heightMsl_m(49.5, 10.505), 150, 0.1) << "as the message says";
+}
+
+TEST_F(ImplausibleTerrain, UnitOfHeightsInAProjectionFileOfArcInfoIsUsed) {
+  const std::string file = folder_.write(
+      "a.asc", "ncols 2\nnrows 2\nxllcorner 10\nyllcorner 49\ncellsize 0.5\n1000 1000\n1000 1000\n");
+  folder_.write("a.prj",
+                "Projection GEOGRAPHIC\nDatum WGS84\nSpheroid WGS84\nUnits DD\nZunits FEET\nParameters\n");
+  EXPECT_NEAR(load(file)->heightMsl_m(49.5, 10.5), 304.8, 0.1);
 }
 
 TEST_F(ImplausibleTerrain, HeightsThatAreNotOnEarthAreRefusedWithTheUnitsThatFit) {

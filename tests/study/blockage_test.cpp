@@ -1,12 +1,15 @@
 /// Beam blockage: the closed form, and terrain for which it is known.
 #include "study/blockage/blockage.h"
 
+#include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
+#include <memory>
 
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "tests/scenario/dem_file.h"
@@ -120,6 +123,36 @@ TEST_F(BeamBlockage, IsUnknownBehindMissingTerrain) {
   EXPECT_TRUE(std::isnan(blockage.cumulative[3 * blockage.ranges + blockage.ranges - 1]));
   writeBlockageCsv(blockage, folder_ / "a.csv");
   EXPECT_THAT(test::readFile(folder_ / "a.csv"), HasSubstr("270,89750,"));
+}
+
+TEST_F(BeamBlockage, IsWrittenOverAzimuthAndRangeWithThePositionsOfTheGates) {
+  BlockageRequest request;
+  request.range_m = 12e3;
+  request.azimuths = 8;
+  const Blockage blockage = computeBlockage(scenario_, request);
+  writeBlockageNetcdf(blockage, folder_ / "a.nc");
+  GDALAllRegister();
+  const std::unique_ptr<GDALDataset> file(
+      GDALDataset::Open((folder_ / "a.nc").c_str(), GDAL_OF_MULTIDIM_RASTER));
+  ASSERT_NE(file, nullptr);
+  const auto valuesOf = [&](const char* name) {
+    const auto array = file->GetRootGroup()->OpenMDArray(name);
+    std::vector<double> values(array->GetTotalElementsCount());
+    const std::vector<GUInt64> start{0, 0};
+    const std::vector<std::size_t> count{8, static_cast<std::size_t>(blockage.ranges)};
+    array->Read(start.data(), count.data(), nullptr, nullptr, GDALExtendedDataType::Create(GDT_Float64),
+                values.data());
+    return values;
+  };
+  const std::vector<double> latitude_deg = valuesOf("lat"), longitude_deg = valuesOf("lon"),
+                            part = valuesOf("cumulative_blockage"), beam_m = valuesOf("beam_msl");
+  const int gate = 2 * blockage.ranges + 20;  // to the east
+  const GeodeticPosition expected = geodesicDirect(
+      blockage.position.latitude_deg, blockage.position.longitude_deg, kPi / 2, blockage.gate_m(20));
+  EXPECT_NEAR(latitude_deg[gate], expected.latitude_deg, 1e-4);
+  EXPECT_NEAR(longitude_deg[gate], expected.longitude_deg, 1e-4);
+  EXPECT_FLOAT_EQ(static_cast<float>(part[gate]), blockage.cumulative[gate]);
+  EXPECT_NEAR(beam_m[gate], blockage.axis_msl_m(blockage.gate_m(20)), 0.01);
 }
 
 TEST_F(BeamBlockage, EndsByDefaultWithTheLastGateOverKnownGround) {

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/log.h"
 #include "tests/support/errors.h"
@@ -58,8 +60,8 @@ TEST(CandidateSites, HaveOnePositionEach) {
   EXPECT_THAT(test::errorOf([&] { sitesOf("POINT EMPTY"); }),
               HasSubstr("a.csv: point 2 is empty: it has no coordinates"));
   EXPECT_THAT(
-      test::errorOf([&] { sitesOf("POINT (190 46)"); }),
-      HasSubstr("point 2 is at longitude 190, latitude 46, outside the allowed range -180 to 180, -90 to "
+      test::errorOf([&] { sitesOf("POINT (400 46)"); }),
+      HasSubstr("point 2 is at longitude 400, latitude 46, outside the allowed range -180 to 360, -90 to "
                 "90"));
   EXPECT_THAT(test::errorOf([&] { sitesOf("MULTIPOINT ((5 52), (5.1 52))"); }),
               HasSubstr("point 2 is a multipoint of 2 places"));
@@ -93,16 +95,119 @@ TEST(CandidateSites, TablesOfLatitudesAndLongitudesNeedNoWkt) {
   EXPECT_EQ(unnamed[1].name, "site 2");
 }
 
-TEST(CandidateSites, ColumnsOfATableThatAreNotUsedAreNamedInAWarning) {
+TEST(CandidateSites, CoordinatesOfATableMayBeTexts) {
   const test::TemporaryFolder folder;
+  int files = 0;
+  for (const char* text :
+       {"name;lat;lon\nhill;36°30'36\"N;84°12'00\"W\n", "name,lat,lon\nhill,36 30 36,-84 12 0\n",
+        "name,lat,lon\nhill,N36 30.6,W84 12.0\n", "name,lat,lon\nhill,36.51,275.8\n",
+        "name,lat,lon\nhill,\"36°30'36\"N\",\"84°12'00\"W\"\n", "name,lat,NS,lon,EW\nhill,36.51,N,84.2,W\n",
+        "sep=;\nname;lat;lon\nhill;36,51;-84,2\n", "name,lat,lon\nhill,36 30.6 N,84 12.0 W\n",
+        "name,Latitude (DMS),Longitude (DMS)\nhill,36d30'36\"N,84d12'0\"W\n",
+        "name,lat,lon\nhill,\"36°30'36\"\"N\",\"84°12'00\"\"W\"\n", "name,mgrs\nhill,16S GF 50751 44164\n",
+        "name,MGRS\nhill,16SGF5075144164\n", "name;utm\nhill;16n 750751 4044164\n",
+        "name,coordinates\nhill,\"36.51, -84.2\"\n"}) {
+    const auto sites = readCandidates(folder.write("a" + std::to_string(++files) + ".csv", text));
+    ASSERT_EQ(sites.size(), 1u) << text;
+    EXPECT_NEAR(sites[0].latitude_deg, 36.51, 2e-5) << text;
+    EXPECT_NEAR(sites[0].longitude_deg, -84.2, 2e-5) << text;
+  }
+}
+
+std::string warningsOf(const std::function<void()>& call) {
   std::string warnings;
   setLogSink([&](LogLevel level, const std::string& message) {
     if (level == LogLevel::warning) warnings += message;
   });
-  readCandidates(folder.write("a.csv", "name,lat,lon,height_agl_m\nhill,52,5,60\n"));
+  call();
   setLogSink({});
-  EXPECT_THAT(warnings,
-              HasSubstr("not used: column 'height_agl_m'; each site has the height of its platform"));
+  return warnings;
+}
+
+TEST(CandidateSites, ColumnsOfATableThatAreNotUsedAreNamedInAWarning) {
+  const test::TemporaryFolder folder;
+  const std::string warnings =
+      warningsOf([&] { readCandidates(folder.write("a.csv", "name,lat,lon,mast\nhill,52,5,60\n")); });
+  EXPECT_THAT(warnings, HasSubstr("not used: column 'mast'; each site has the height of its platform"));
+  EXPECT_THAT(warnings, HasSubstr("height_agl_m"));
+}
+
+TEST(CandidateSites, HeightsAreThoseOfAColumnThatStatesItsReference) {
+  const test::TemporaryFolder folder;
+  std::vector<CandidateSite> sites;
+  const std::string warnings = warningsOf([&] {
+    sites = readCandidates(folder.write("a.csv", "name,lat,lon,height_agl_m\nhill,52,5,60\nflat,52.1,5,\n"));
+  });
+  EXPECT_EQ(warnings, "");
+  ASSERT_TRUE(sites[0].height);
+  EXPECT_STREQ(sites[0].height->key(), "height_agl_m");
+  EXPECT_EQ(sites[0].height->height_m, 60);
+  EXPECT_FALSE(sites[1].height) << "an empty cell: that of the platform";
+  sites = readCandidates(folder.write(
+      "a.geojson", R"({"type": "Feature", "properties": {"height_msl_m": 120.5}, "geometry": {"type": "Point",
+"coordinates": [5, 52]}})"));
+  ASSERT_TRUE(sites[0].height);
+  EXPECT_STREQ(sites[0].height->key(), "height_msl_m");
+  EXPECT_EQ(sites[0].height->height_m, 120.5);
+}
+
+/// A file of one vector format with a point named hill at 52.5 N 5.25 W; in a .zip if its name says so.
+std::string pointFile(const test::TemporaryFolder& folder, const char* driver, const std::string& name) {
+  gdal::prepare();
+  const std::string file = folder / name;
+  const gdal::Dataset dataset(
+      GDALCreate(GDALGetDriverByName(driver), file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+  if (dataset == nullptr) return "";
+  gdal::SpatialReference wgs84(OSRNewSpatialReference(nullptr));
+  OSRImportFromEPSG(wgs84.get(), 4326);
+  OSRSetAxisMappingStrategy(wgs84.get(), OAMS_TRADITIONAL_GIS_ORDER);
+  const OGRLayerH layer = GDALDatasetCreateLayer(dataset.get(), "sites", wgs84.get(), wkbPoint, nullptr);
+  const OGRFieldDefnH field = OGR_Fld_Create("name", OFTString);
+  OGR_L_CreateField(layer, field, 1);
+  OGR_Fld_Destroy(field);
+  const OGRFeatureH feature = OGR_F_Create(OGR_L_GetLayerDefn(layer));
+  OGR_F_SetFieldString(feature, OGR_F_GetFieldIndex(feature, "name"), "hill");
+  const OGRGeometryH point = OGR_G_CreateGeometry(wkbPoint);
+  OGR_G_SetPoint_2D(point, 0, -5.25, 52.5);
+  OGR_F_SetGeometry(feature, point);
+  OGR_G_DestroyGeometry(point);
+  OGR_L_CreateFeature(layer, feature);
+  OGR_F_Destroy(feature);
+  return file;
+}
+
+TEST(CandidateSites, AreReadFromArchivesAndWaypoints) {
+  const test::TemporaryFolder folder;
+  // GDAL writes a shapefile into an archive by its name.
+  const std::string kmz = pointFile(folder, "LIBKML", "a.kmz");
+  const std::string shapes = pointFile(folder, "ESRI Shapefile", "a.shp.zip");
+  const std::string gpx = folder.write(
+      "a.gpx",
+      "<gpx version=\"1.1\" creator=\"t\" xmlns=\"http://www.topografix.com/GPX/1/1\"><wpt lat=\"52.5\" "
+      "lon=\"-5.25\"><ele>31</ele><name>hill</name></wpt><trk><trkseg><trkpt lat=\"51\" lon=\"-5\"/><trkpt "
+      "lat=\"51.1\" lon=\"-5\"/></trkseg></trk></gpx>");
+  for (const std::string& file : {kmz, shapes, gpx}) {
+    std::vector<CandidateSite> sites;
+    const std::string warnings = warningsOf([&] { sites = readCandidates(file); });
+    ASSERT_EQ(sites.size(), 1u) << file;
+    EXPECT_EQ(sites[0].name, "hill") << file;
+    EXPECT_NEAR(sites[0].latitude_deg, 52.5, 1e-9) << file;
+    EXPECT_NEAR(sites[0].longitude_deg, -5.25, 1e-9) << file;
+    if (file == gpx)
+      EXPECT_THAT(warnings, HasSubstr("not used: the heights of the points; each site has the height of"));
+    else
+      EXPECT_EQ(warnings, "") << file;
+  }
+}
+
+TEST(CandidateSites, OfAnArchiveNeedOneFile) {
+  const test::TemporaryFolder folder;
+  const auto faultOf = [&](const std::string& file) {
+    return test::errorOf([&] { readCandidates(file); }, ErrorCode::bad_input);
+  };
+  EXPECT_THAT(faultOf(folder.write("a.zip", "no archive")),
+              HasSubstr("a.zip: cannot be read as a ZIP archive"));
+  EXPECT_THAT(faultOf(folder / "missing.zip"), HasSubstr("no such file"));
 }
 
 TEST(CandidateSites, UnreadableCellOfATableIsNamedByItsPlace) {
@@ -111,8 +216,9 @@ TEST(CandidateSites, UnreadableCellOfATableIsNamedByItsPlace) {
     return test::errorOf(
         [&] { readCandidates(folder.write("a.csv", "latitude_deg,longitude_deg\n" + rows)); });
   };
-  EXPECT_THAT(faultOf("52,5\n52.1,east\n"),
-              HasSubstr("a.csv:3:6: the longitude is 'east', not a number of degrees"));
+  EXPECT_THAT(
+      faultOf("52,5\n52.1,east\n"),
+      HasSubstr("a.csv:3:6: the longitude is 'east', not a number of degrees or such as 84°12'00\"W"));
   EXPECT_THAT(faultOf("520,5\n"), HasSubstr("a.csv:2:1: the latitude is 520; allowed are -90 to 90 deg"));
   EXPECT_THAT(faultOf("52,5,7\n"), HasSubstr("3 values, but the header names 2 columns"));
 }
@@ -128,7 +234,7 @@ TEST(CandidateSites, NumberOutsideLimitsIsRefused) {
       test::errorOf([&] { readCandidates(folder.write("none.csv", "WKT,name\n")); }),
       HasSubstr(
           "0 points, outside the allowed range 1 to 10000; a CSV file needs the columns latitude_deg and "
-          "longitude_deg, or WKT"));
+          "longitude_deg, or mgrs, or WKT"));
 }
 
 TEST(CandidateSites, UnreadablePointIsAnError) {

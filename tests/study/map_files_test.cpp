@@ -660,6 +660,37 @@ TEST(MapShapes, FollowThePixelsBesideThoseWithoutAnEcho) {
   EXPECT_EQ(shapesOf(*fixture.grid, map, "none").bands.size(), 1U);
 }
 
+TEST(MapFolder, GeoJsonIsCutWhereTheLongitudeTurns) {
+  Fixture fixture;
+  MapStudy study = fixture.study();
+  study.grid = fixture.grid =
+      std::make_shared<const MapGrid>(makeMapGrid(parseArea("51,180,9000"), 500, "utm"));
+  const test::TemporaryFolder folder;
+  MapFolder maps(folder.path(), study, {"geojson"});
+  maps.add(fixture.map(MapKind::level, 80, -100, -20));
+  maps.finish({});
+  const nlohmann::json json = nlohmann::json::parse(test::readFile(folder / "maps/coverage.geojson"));
+  int in_west = 0, in_east = 0;
+  for (const auto& feature : json["features"]) {
+    if (feature["properties"]["layer"] != "bands") continue;
+    for (const auto& polygon : feature["geometry"]["coordinates"]) {
+      double west = 1000, east = -1000;
+      for (const auto& ring : polygon) {
+        for (const auto& at : ring) {
+          west = std::min(west, at[0].get<double>());
+          east = std::max(east, at[0].get<double>());
+        }
+      }
+      EXPECT_GE(west, -180);
+      EXPECT_LE(east, 180);
+      EXPECT_LT(east - west, 1);
+      ++(west < 0 ? in_west : in_east);
+    }
+  }
+  EXPECT_GT(in_west, 0);
+  EXPECT_GT(in_east, 0);
+}
+
 TEST(MapFolder, FilesOfAnEditedScenarioSayWhatWasChanged) {
   Fixture fixture;
   const std::vector<scenario::Edit> edits{{"emitters.search radar.power_w", "500"},

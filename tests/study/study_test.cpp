@@ -438,6 +438,26 @@ TEST(Study, SitesAreChosenFromCandidates) {
   }
 }
 
+TEST(Study, HeightsOfSitesReplaceThatOfThePlatform) {
+  const test::TemporaryFolder folder;
+  const std::string table =
+      folder.write("sites.csv", "name,lat,lon,height_msl_m\nhigh,36.3,-84.25,900\nown,36.32,-84.25,\n");
+  const Study study("sites: {platform: ridge site, candidates: " + table + ", choose: 1}",
+                    "\nmeasures: [{name: covered, height: \"agl:100\", unit: percent}]\n");
+  ASSERT_EQ(study.spec().variants.count(), 2u);
+  const auto heightOf = [&](std::size_t variant) {
+    const auto edited = scenario::editScenario(*study.spec().base, study.spec().variants.edits(variant));
+    for (const scenario::Platform& platform : edited.scenario->platforms) {
+      if (platform.name == "ridge site") return platform.track[0].position;
+    }
+    return scenario::SitePosition{};
+  };
+  EXPECT_EQ(heightOf(0).height_msl_m, 900);
+  EXPECT_FALSE(heightOf(0).height_agl_m);
+  EXPECT_FALSE(heightOf(1).height_msl_m);
+  EXPECT_TRUE(heightOf(1).height_agl_m);
+}
+
 TEST(Study, TheShippedStudiesHaveNoFault) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test::sourceFile("scenarios/study"))) {

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "document/text_lines.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/log.h"
@@ -29,8 +31,17 @@ std::string numberedName(const std::vector<CandidateSite>& sites) {
   return fmt::format("site {}", sites.size() + 1);
 }
 
+/// The field of heights of a layer; -1: none.
+int heightFieldOf(OGRFeatureDefnH layer) {
+  for (int field = 0; field < OGR_FD_GetFieldCount(layer); ++field) {
+    if (scenario::heightReferenceOf(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(layer, field)))) return field;
+  }
+  return -1;
+}
+
+/// @param has_third  becomes true if a point has a third coordinate that is not used
 void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::string& file,
-              std::vector<CandidateSite>& sites) {
+              std::vector<CandidateSite>& sites, bool& has_third) {
   const gdal::SpatialReference wgs84 = scenario::wgs84Reference();
   gdal::Transformation transformation;
   if (OGR_L_GetSpatialRef(layer) != nullptr) {
@@ -38,7 +49,9 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
     OSRSetAxisMappingStrategy(own.get(), OAMS_TRADITIONAL_GIS_ORDER);
     transformation = scenario::transformationBetween(own, wgs84);
   }
-  const int name_field = OGR_FD_GetFieldIndex(OGR_L_GetLayerDefn(layer), "name");
+  const OGRFeatureDefnH definition = OGR_L_GetLayerDefn(layer);
+  const int name_field = OGR_FD_GetFieldIndex(definition, "name");
+  const int height_field = heightFieldOf(definition), ele_field = OGR_FD_GetFieldIndex(definition, "ele");
   points.eachFeature(layer, [&](OGRFeatureH feature) {
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
     const OGRwkbGeometryType type =
@@ -59,13 +72,43 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
     double x = own_x, y = own_y;
     if (transformation != nullptr && OCTTransform(transformation.get(), 1, &x, &y, nullptr) == 0)
       fail(fmt::format("at ({}, {}) has no longitude and latitude", own_x, own_y));
-    if (!(std::abs(y) <= 90 && std::abs(x) <= 180))
-      fail(fmt::format("is at longitude {}, latitude {}, outside the allowed range -180 to 180, -90 to 90", x,
+    if (!(std::abs(y) <= 90 && x >= -180 && x <= 360))
+      fail(fmt::format("is at longitude {}, latitude {}, outside the allowed range -180 to 360, -90 to 90", x,
                        y));
     std::string name = name_field < 0 ? "" : OGR_F_GetFieldAsString(feature, name_field);
     if (name.empty()) name = numberedName(sites);
-    sites.push_back({std::move(name), y, x});
+    CandidateSite site{std::move(name), y, wrapLongitude_deg(x), {}};
+    if (height_field >= 0 && OGR_F_IsFieldSetAndNotNull(feature, height_field) != 0) {
+      const char* const field = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(definition, height_field));
+      const std::string text = OGR_F_GetFieldAsString(feature, height_field);
+      const std::optional<double> height_m = document::numberOrCommaIn(text);
+      if (!height_m && !text.empty()) fail(fmt::format("has {} '{}', not a number of metres", field, text));
+      if (height_m) site.height = {*scenario::heightReferenceOf(field), *height_m};
+    }
+    has_third = has_third || OGR_G_GetZ(geometry, 0) != 0 ||
+                (ele_field >= 0 && OGR_F_IsFieldSetAndNotNull(feature, ele_field) != 0);
+    sites.push_back(std::move(site));
   });
+}
+
+/// Says once which heights the sites have, and what of the file is not used.
+void tellHeights(const std::string& file, const std::vector<CandidateSite>& sites,
+                 const std::vector<std::string>& unused, bool has_third) {
+  const auto with_height =
+      std::find_if(sites.begin(), sites.end(), [](const CandidateSite& site) { return site.height; });
+  std::string text;
+  if (!unused.empty())
+    text = fmt::format("not used: {} '{}'", unused.size() == 1 ? "column" : "columns",
+                       fmt::join(unused, "', '"));
+  if (has_third) text = "not used: the heights of the points";
+  if (with_height != sites.end()) {
+    logInfo(fmt::format("{}: sites have the heights of its {}", file, with_height->height->key()));
+  } else if (!text.empty()) {
+    text +=
+        "; each site has the height of its platform in the scenario (a column or field height_agl_m or "
+        "height_msl_m gives each its own)";
+  }
+  if (!text.empty()) logWarning(fmt::format("{}: {}", file, text));
 }
 
 }  // namespace
@@ -73,22 +116,24 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
 std::vector<CandidateSite> readCandidates(const std::string& file) {
   std::vector<CandidateSite> sites;
   std::vector<std::string> others;
+  bool has_third = false;
   if (const auto table = scenario::readPointTable(file, &others)) {
     for (const scenario::NamedPoint& point : *table) {
-      sites.push_back(
-          {point.name.empty() ? numberedName(sites) : point.name, point.latitude_deg, point.longitude_deg});
+      sites.push_back({point.name.empty() ? numberedName(sites) : point.name, point.latitude_deg,
+                       point.longitude_deg, point.height});
     }
   } else {
     const scenario::VectorFile points(file);
     const scenario::GdalMessages messages;
-    for (OGRLayerH layer : points.layers()) addLayer(points, layer, file, sites);
+    for (OGRLayerH layer : points.layers()) addLayer(points, layer, file, sites, has_third);
   }
   if (sites.empty() || sites.size() > kMaxCandidates) {
     throw Error(
         ErrorCode::bad_input, {file, 0, 0},
-        fmt::format(
-            "{} points, outside the allowed range 1 to {}{}", sites.size(), kMaxCandidates,
-            sites.empty() ? "; a CSV file needs the columns latitude_deg and longitude_deg, or WKT" : ""));
+        fmt::format("{} points, outside the allowed range 1 to {}{}", sites.size(), kMaxCandidates,
+                    sites.empty()
+                        ? "; a CSV file needs the columns latitude_deg and longitude_deg, or mgrs, or WKT"
+                        : ""));
   }
   std::set<std::string> names;
   for (const CandidateSite& site : sites) {
@@ -100,10 +145,7 @@ std::vector<CandidateSite> readCandidates(const std::string& file) {
       throw Error(ErrorCode::bad_input, {file, 0, 0}, fmt::format("two points are named '{}'", site.name));
     }
   }
-  if (!others.empty()) {
-    logWarning(fmt::format("{}: not used: {} '{}'; each site has the height of its platform in the scenario",
-                           file, others.size() == 1 ? "column" : "columns", fmt::join(others, "', '")));
-  }
+  tellHeights(file, sites, others, has_third);
   return sites;
 }
 
@@ -131,7 +173,7 @@ std::vector<CandidateSite> candidatesOver(const MapArea& area, double distance_m
                   .distance_m > area.circle->radius_m) {
         continue;
       }
-      sites.push_back({fmt::format("site {}", sites.size() + 1), latitude_deg, longitude_deg});
+      sites.push_back({fmt::format("site {}", sites.size() + 1), latitude_deg, longitude_deg, {}});
       if (sites.size() > kMaxCandidates) {
         throw Error(ErrorCode::bad_input, fmt::format("candidates every {} m are more than the allowed {}",
                                                       distance_m, kMaxCandidates));

@@ -309,10 +309,18 @@ class VariantReader {
     if (const std::string text = scenario::farOutsideText(reading_.spec.base->region, positions);
         !text.empty())
       logWarning(fmt::format("candidate sites: {}", text));
+    const std::vector<std::string> heights = heightKeysOf(candidates, platform);
+    for (const std::string& key : heights) factor.paths.push_back(platform + key);
     for (const CandidateSite& site : candidates) {
       factor.names.push_back(site.name);
       factor.values.push_back(fmt::format("{}", site.latitude_deg));
       factor.values.push_back(fmt::format("{}", site.longitude_deg));
+      for (const std::string& key : heights) {
+        const bool is_own = site.height && key == site.height->key();
+        factor.values.push_back(!site.height ? ""
+                                : is_own     ? fmt::format("{}", site.height->height_m)
+                                             : "null");
+      }
     }
     factor.count = candidates.size();
     SiteSearch search;
@@ -344,6 +352,24 @@ class VariantReader {
       tryEdits(editsOf(factor, 0), sites.locationOf("platform"));
     reading_.spec.sites = search;
     return factor;
+  }
+
+  /// Keys of heights that the candidates set: their own, and that of the platform, which theirs replace.
+  /// Empty if no candidate has a height.
+  /// @param position  path of the platform's position, with the dot
+  std::vector<std::string> heightKeysOf(const std::vector<CandidateSite>& candidates,
+                                        const std::string& position) const {
+    std::set<std::string> keys;
+    for (const CandidateSite& site : candidates) {
+      if (site.height) keys.insert(site.height->key());
+    }
+    if (keys.empty()) return {};
+    for (const char* const key : scenario::kHeightKeys) {
+      if (document::resolvePath(position + key, reading_.spec.base->source->root, scenario::scenarioSpec())
+              .exists)
+        keys.insert(key);
+    }
+    return {keys.begin(), keys.end()};
   }
 
   static std::vector<scenario::Edit> editsOf(const Factor& factor, std::size_t setting) {

@@ -55,6 +55,37 @@ long long differingPixels(const Image8& a, const Image8& b) {
   return compare(a, b).erroneous;
 }
 
+TEST(Overlay, ClassesOnTheGroundAreListedAtTheLeftAboveTheCompass) {
+  const ImageSize size{1200, 900};
+  const Camera camera = makeCamera({}, kBox, size);
+  const auto with = [&](int count) {
+    Annotations annotations;
+    annotations.axes = false;
+    for (int n = 0; n < count; ++n)
+      annotations.ground_classes.push_back({0, "class " + std::to_string(n), Rgb{1, 0, 0}});
+    return compose(Image(size), camera, kBox, annotations);
+  };
+  const Image8 none = with(0);
+  const auto redPixels = [&](const Image8& picture) {
+    int red = 0;
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        if (std::equal(picture.at(x, y), picture.at(x, y) + 4, none.at(x, y))) continue;
+        EXPECT_LT(x, size.width / 2);
+        EXPECT_GT(y, 50);
+        EXPECT_LT(y, size.height - 130);
+        const std::uint8_t* const at = picture.at(x, y);
+        if (at[0] > 250 && at[1] < 5) ++red;
+      }
+    }
+    return red;
+  };
+  const int three = redPixels(with(3)), many = redPixels(with(300));
+  EXPECT_NEAR(three, 3 * 15 * 15, 3 * 30) << "swatches without their corners";
+  EXPECT_GT(many, 5 * three);
+  EXPECT_LT(many, 30 * 15 * 15);
+}
+
 TEST(Overlay, LegendsOfManyCategoriesEndInsideThePicture) {
   const ImageSize size{800, 600};
   const Camera camera = makeCamera({}, kBox, size);

@@ -86,6 +86,7 @@ struct Annotations {
   std::vector<CutPlane> planes;  ///< framed, with captions
   std::vector<GroundLine> ground_lines;
   std::vector<GroundPoint> ground_points;
+  std::vector<Category> ground_classes;  ///< names and colours of the classes on the ground
   std::optional<Legend> legend;
   bool reserves_legend = false;  ///< without a legend its room stays free, so that the scene does not move
   bool georeferenced = true;     ///< compass, axes in km and altitude; otherwise axes in the grid's unit

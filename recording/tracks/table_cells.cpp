@@ -1,0 +1,46 @@
+#include "recording/tracks/table_cells.h"
+
+#include <cmath>
+
+namespace emscape::interop {
+
+double secondsOf(double time) {
+  constexpr double kUnixTime_ms = 1e11, kUnixTime_us = 1e14, kUnixTime_ns = 1e17;
+  return time > kUnixTime_ns   ? time / 1e9
+         : time > kUnixTime_us ? time / 1e6
+         : time > kUnixTime_ms ? time / 1000
+                               : time;
+}
+
+bool isCompactDate(std::string_view text) {
+  constexpr std::size_t kDigits = 14;
+  return text.size() >= kDigits && (text.substr(0, 2) == "19" || text.substr(0, 2) == "20") &&
+         text.find_first_not_of("0123456789") >= kDigits && (text.size() == kDigits || text[kDigits] == '.');
+}
+
+double degreesOf(double degrees_minutes) {
+  const double minutes = std::fmod(degrees_minutes, 100);
+  return (degrees_minutes - minutes) / 100 + minutes / 60;
+}
+
+bool isFill(double number) {
+  constexpr double kLongestNines = 1e9, kHighest_m = 1e5;
+  for (double nines = 9999; nines < kLongestNines; nines = 10 * nines + 9) {
+    if (number == -nines || (number == nines && nines >= kHighest_m - 1)) return true;
+  }
+  return number == -32768;
+}
+
+std::string joinedAngle(const std::string& text) {
+  std::string joined;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_blank = text[i] == ' ';
+    const bool is_before_digit = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+    const bool is_after_digit = !joined.empty() && joined.back() >= '0' && joined.back() <= '9';
+    if (!is_blank) joined += text[i];
+    if (is_blank && is_before_digit && is_after_digit) joined += ':';
+  }
+  return joined;
+}
+
+}  // namespace emscape::interop
