@@ -71,8 +71,8 @@ bool isStandardTile(const std::string& name, int posts) {
     }
     return true;
   };
-  return (posts == 1201 || posts == 3601) && is(0, "NSns") && digits(1, 2) && is(3, "EWew") && digits(4, 3) &&
-         is(7, ".");
+  const bool is_named = is(0, "NSns") && digits(1, 2) && is(3, "EWew") && digits(4, 3) && is(7, ".");
+  return (posts == 1201 || posts == 3601) && is_named && cornerInName(name).has_value();
 }
 
 /// The height in a colour.

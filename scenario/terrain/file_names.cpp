@@ -253,6 +253,7 @@ std::optional<TileCorner> cornerInName(const std::string& name) {
                        text.begin() + static_cast<std::ptrdiff_t>(at + count),
                        [](unsigned char c) { return std::isdigit(c) != 0; });
   };
+  std::optional<TileCorner> found;
   for (std::size_t k = 0; k < text.size(); ++k) {
     if ((text[k] != 'n' && text[k] != 's') || !isDigits(k + 1, 2)) continue;
     const std::size_t digits = isDigits(k + 1, 3) ? 3 : 2;  // of the latitude: also N034E135
@@ -262,10 +263,14 @@ std::optional<TileCorner> cornerInName(const std::string& name) {
     const int latitude_deg = std::stoi(text.substr(k + 1, digits)),
               longitude_deg = std::stoi(text.substr(east + 1, 3));
     if (latitude_deg > 90 || longitude_deg > 180) continue;
-    return TileCorner{text[k] == 's' ? -latitude_deg : latitude_deg,
-                      text[east] == 'w' ? -longitude_deg : longitude_deg};
+    const TileCorner corner{text[k] == 's' ? -latitude_deg : latitude_deg,
+                            text[east] == 'w' ? -longitude_deg : longitude_deg};
+    const bool is_another =
+        found && (found->latitude_deg != corner.latitude_deg || found->longitude_deg != corner.longitude_deg);
+    if (is_another) return std::nullopt;
+    found = corner;
   }
-  return std::nullopt;
+  return found;
 }
 
 MemoryFiles::MemoryFiles() {

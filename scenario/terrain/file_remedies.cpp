@@ -160,7 +160,8 @@ std::string remedyForNoSystem(bool is_plane) {
 }
 
 std::string remedyForTileWithoutPosition() {
-  return "has no position: an HGT tile is placed by its name. Rename it to that of its south-western corner, "
+  return "has no position, or two: an HGT tile is placed by its name. Rename it to that of its south-western "
+         "corner, "
          "such as "
          "N38E052.hgt";
 }

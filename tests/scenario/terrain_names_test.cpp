@@ -93,7 +93,8 @@ TEST_F(TerrainNames, SLOW_HgtOfHalfAndThirdOfASecondIsRead) {
 }
 
 TEST_F(TerrainNames, HgtWithoutAPositionIsReadAfterItIsRenamed) {
-  EXPECT_THAT(problemOf(tile("elevation.hgt")), HasSubstr("Rename it to that of its south-western corner"));
+  for (const char* name : {"elevation.hgt", "N49E010_N48E010.hgt", "S34W271.hgt"})
+    EXPECT_THAT(problemOf(tile(name)), HasSubstr("Rename it to that of its south-western corner")) << name;
   fs::rename(folder_ / "elevation.hgt", folder_ / "N49E010.hgt");
   expectTile(folder_ / "N49E010.hgt", 121);
   std::ofstream(folder_ / "N49E010.hgt") << "abc";
