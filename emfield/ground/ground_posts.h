@@ -1,7 +1,9 @@
 /// Terrain profiles from an emitter to the columns: the posts at which they read the ground.
 ///
-/// The spacing is half that of the elevation model, smaller near the emitter, and independent of the grid.
-/// The field, the jammers' paths and the budget of a single path use the same posts.
+/// The spacing of regular posts is half that of the elevation model, smaller near the emitter, and
+/// independent of the grid. Profiles of delta-Bullington have posts where the path crosses the lines between
+/// the posts of the elevation model: chord_crossings.h. The field, the jammers' paths and the budget of a
+/// single path use the same posts.
 #pragma once
 
 #include <vector>
@@ -31,8 +33,17 @@ struct GroundPosts {
   bool is_smooth = true;  ///< a smooth earth at mean sea level; there is no terrain
   const double* ranges_m = nullptr;
   int range_count = 0;
+  /// For profiles with posts at crossings (chord_crossings.h): number of the posts in the emitter's own cell.
+  int near_count = 0;
+  /// Chords with more crossings than this have regular posts; see maxCrossings().
+  double crossings_per_m = 0;
   bool is_raised = false;  ///< profiles are raised by the clutter of the land cover; see raiseByClutter()
 
+  /// Largest number of crossings of a chord of some length that are read.
+  EMSCAPE_HD int maxCrossings(double chord_m) const {
+    constexpr int kOfShortChord = 8;
+    return kOfShortChord + static_cast<int>(crossings_per_m * chord_m);
+  }
   /// Index of the last post nearer than a range; 0 if there is none. Most posts are equally far apart: an
   /// estimate from the last one, then a few steps.
   EMSCAPE_HD int lastBefore(double range_m) const {
@@ -45,6 +56,18 @@ struct GroundPosts {
     return post;
   }
 };
+
+/// Largest number of posts of a profile within the ranges of regular posts, with one at the receivers.
+EMSCAPE_HD inline int maxPosts(const Station& station, const GroundPosts& ground, bool at_crossings) {
+  const int regular = ground.range_count + 1;
+  if (!at_crossings || ground.is_smooth) return regular;
+  const double farthest_m = ground.ranges_m[ground.range_count - 1];
+  const double chords = 1 + farthest_m / maxChord_m(std::fabs(station.geodesy.station.up.z));
+  // Of each chord either the crossings or the regular posts, of which there are two thirds of the most
+  // crossings.
+  return regular + ground.maxCrossings(farthest_m) / 3 +
+         static_cast<int>(chords) * (ground.maxCrossings(0) + 2);
+}
 
 /// The ground below an emitter's paths, in host memory. Pointers are valid as long as both arguments.
 GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<double>& ranges_m);
@@ -87,11 +110,17 @@ EMSCAPE_HD void visitPosts(const Station& station, const GroundPosts& ground, co
   }
 }
 
-/// Reads the heights of the first `count` posts toward a point. Host and device.
+/// Reads the regular posts that are nearer than a point. Host and device.
 struct PostReader {
-  EMSCAPE_HD void operator()(const Station& station, const GroundPosts& ground, const FastInverse& path,
-                             int count, float* height_msl_m) const {
-    visitPosts(station, ground, path, count, [&](int i, float here) { height_msl_m[i] = here; });
+  /// @return their number, with the emitter's
+  EMSCAPE_HD int operator()(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                            double* range_m, float* height_msl_m) const {
+    const int count = ground.lastBefore(path.distance_m) + 1;
+    visitPosts(station, ground, path, count, [&](int i, float here) {
+      range_m[i] = ground.ranges_m[i];
+      height_msl_m[i] = here;
+    });
+    return count;
   }
 };
 
@@ -144,14 +173,10 @@ template <class Reader>
 EMSCAPE_HD TerrainProfile readProfile(const Station& station, const GroundPosts& ground,
                                       const FastInverse& point, float ground_msl_m,
                                       const ExcessScratch& scratch, const Reader& read) {
-  const double range_m = point.distance_m;
-  const bool is_beyond_first = range_m > 0;
-  const int before = ground.lastBefore(range_m);
-  read(station, ground, point, before + 1, scratch.ground_msl_m);
-  for (int i = 0; i <= before; ++i) scratch.range_m[i] = ground.ranges_m[i];
-  const int last = is_beyond_first ? before + 1 : 0;
-  if (is_beyond_first) {
-    scratch.range_m[last] = range_m;
+  const int nearer = read(station, ground, point, scratch.range_m, scratch.ground_msl_m);
+  const int last = point.distance_m > 0 ? nearer : 0;
+  if (last > 0) {
+    scratch.range_m[last] = point.distance_m;
     scratch.ground_msl_m[last] = ground_msl_m;
   }
   TerrainProfile profile{scratch.range_m, scratch.ground_msl_m, last + 1};
