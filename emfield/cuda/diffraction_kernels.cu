@@ -1,112 +1,23 @@
+// `diffraction` on the device: a warp a column.
+//
+// The first pass over a path's posts gives the steepest slope from the transmitter, and the slope of the line
+// of sight above which every post is clear: nu of a post falls linearly with the receiver's height. Only
+// receivers below that, or not clear of the smooth earth, are computed, some at each further pass; the others
+// have no loss and were filled beforehand. The same formulas as propagation/diffraction/excess.cpp.
+
 #include <algorithm>
 #include <cstdint>
-#include <type_traits>
 
 #include "base/cuda/cuda_memory.h"
-#include "emfield/cuda/column_tiles.h"
-#include "propagation/diffraction/obstacle_maxima.h"
+#include "emfield/cuda/warp_posts.h"
+#include "propagation/diffraction/smooth_earth.h"
 
 namespace emscape::emfield::cuda {
 namespace {
 
-using propagation::DiffractionColumn;
-using propagation::TerrainSums;
-
-/// Summary of a block of posts; see DiffractionColumn.
-struct PostBlock {
-  float highest_msl_m, lowered_msl_m;
-};
-
-/// Memory for the profiles of the columns in progress: for each post or block of posts, the values of
-/// consecutive threads.
-class ProfileMemory {
- public:
-  /// @param posts  of the longest profile
-  ProfileMemory(const ScratchMemory& memory, int posts) {
-    constexpr int kBlock = propagation::kDiffractionBlock;
-    const auto blocks = static_cast<std::size_t>((posts + kBlock - 1) / kBlock);
-    const std::size_t bytes_each = blocks * (kBlock * sizeof(float) + sizeof(PostBlock));
-    threads_ = static_cast<int>(std::min<std::size_t>(memory.bytes / bytes_each, 1 << 30)) / kColumnThreads *
-               kColumnThreads;
-    if (threads_ == 0) throwTooSmall(bytes_each, memory.bytes);
-    blocks_ = static_cast<PostBlock*>(memory.data);
-    heights_msl_m_ = reinterpret_cast<float*>(blocks_ + blocks * static_cast<std::size_t>(threads_));
-  }
-  int threads() const { return threads_; }
-  __device__ float& height_msl_m(int thread, int post) const {
-    return heights_msl_m_[static_cast<long long>(post) * threads_ + thread];
-  }
-  __device__ PostBlock& block(int thread, int b) const {
-    return blocks_[static_cast<long long>(b) * threads_ + thread];
-  }
-
- private:
-  int threads_;
-  PostBlock* blocks_;
-  float* heights_msl_m_;
-};
-
-/// A column's profile for DiffractionColumn, as propagation::ProfilePosts.
-class ColumnPosts {
- public:
-  /// Reads the profile.
-  __device__ ColumnPosts(const DiffractionTask& task, const FastInverse& path, float ground_msl_m,
-                         const ProfileMemory& memory, int thread)
-      : ground_(task.ground),
-        ranges_m_(task.ground.ranges_m),
-        before_(task.ground.lastBefore(path.distance_m)),
-        thread_(thread),
-        distance_m_(path.distance_m),
-        ground_msl_m_(ground_msl_m),
-        memory_(memory) {
-    constexpr int kBlock = propagation::kDiffractionBlock;
-    const auto curvature = static_cast<float>(task.model.model.half_curvature);
-    const int last_block = before_ / kBlock * kBlock;
-    PostBlock block{-HUGE_VALF, -HUGE_VALF};
-    double base = 0, before_m = 0, before_height_m = 0;
-    visitPosts(task.station, task.ground, path, count(), [&](int i, float height_msl_m) {
-      memory.height_msl_m(thread, i) = height_msl_m;
-      const double range_m = ranges_m_[i];
-      if (i == 0) base = static_cast<double>(height_msl_m);
-      const double height_m = static_cast<double>(height_msl_m) - base;
-      if (i > 0 && i < last_block) sums_.add(before_m, before_height_m, range_m, height_m);
-      before_m = range_m;
-      before_height_m = height_m;
-      const auto range = static_cast<float>(range_m);
-      block.highest_msl_m = fmaxf(block.highest_msl_m, height_msl_m);
-      block.lowered_msl_m = fmaxf(block.lowered_msl_m, height_msl_m - curvature * range * range);
-      if (i % kBlock != kBlock - 1 && i != before_) return;
-      memory.block(thread, i / kBlock) = block;
-      block = {-HUGE_VALF, -HUGE_VALF};
-    });
-  }
-
-  __device__ int count() const { return before_ + 1; }
-  __device__ double range_m(int i) const { return ranges_m_[i]; }
-  __device__ float height_msl_m(int i) const { return memory_.height_msl_m(thread_, i); }
-  __device__ float highest_msl_m(int b) const { return memory_.block(thread_, b).highest_msl_m; }
-  __device__ float lowered_msl_m(int b) const { return memory_.block(thread_, b).lowered_msl_m; }
-  /// Sums before the last block, the only ones that DiffractionColumn reads.
-  __device__ TerrainSums sumsBefore(int) const { return sums_; }
-  __device__ double distance_m() const { return distance_m_; }
-  __device__ float ground_msl_m() const { return ground_msl_m_; }
-  __device__ double sea_m() const {
-    return propagation::lengthOverSea_m(
-        count() + 1, [this](int i) { return i <= before_ ? ranges_m_[i] : distance_m_; },
-        [this](int i) { return i <= before_ ? height_msl_m(i) : ground_msl_m_; });
-  }
-  __device__ int lastBefore(double range_m) const { return min(ground_.lastBefore(range_m), before_); }
-
- private:
-  const GroundPosts& ground_;
-  const double* ranges_m_;
-  int before_;
-  int thread_;
-  double distance_m_;
-  float ground_msl_m_;
-  const ProfileMemory& memory_;
-  TerrainSums sums_;
-};
+using propagation::DiffractionModel;
+using propagation::EffectiveHeights;
+using propagation::TerrainTrend;
 
 /// A separate call, so that its registers are not part of those of the columns.
 __device__ __noinline__ float effectiveHeight_m(const Station& station, float height_msl_m, double range_m) {
@@ -114,192 +25,386 @@ __device__ __noinline__ float effectiveHeight_m(const Station& station, float he
       station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m), station.height_msl_m, range_m));
 }
 
-/// Height of a receiver, as input of the model.
-__device__ float modelHeight_m(const Station& station, float height_msl_m, double range_m) {
-  return station.refraction.exponential ? effectiveHeight_m(station, height_msl_m, range_m) : height_msl_m;
+/// Of tilted columns. A separate call, too.
+__device__ __noinline__ float groundAtEnd(const DiffractionTask& task, const FastInverse& path) {
+  return groundAt(task.station, task.ground, path);
 }
 
-/// The column of a thread in a tile.
-template <int kReceivers>
-__device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGrid& grid, int c,
-                                    const ProfileMemory& memory, int thread) {
-  const auto layer = static_cast<long long>(grid.column_count);
-  const auto set = [&](int layer_k, float excess_db) {
-    task.to.out.excess.set(static_cast<std::size_t>(layer_k * layer + c), excess_db);
-  };
-  const int lowest = grid.firstValid(static_cast<std::size_t>(c));
-  for (int below = 0; below < lowest; ++below) set(below, 0);
-  if (grid.isLeftOut(static_cast<std::size_t>(c))) return;
-  const AirLoss& air = task.air;
-  const GridColumn column = grid.columns[static_cast<std::size_t>(c)];
-  bool is_unknown = false;
-  for (int segment = 0; segment < grid.segments; ++segment) {
-    const int end = grid.firstLayer(segment + 1);
-    int k = max(lowest, grid.firstLayer(segment));
-    const auto heightOf = [&](int layer_k) {
-      const int here = min(layer_k, end - 1);
-      return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[here])));
-    };
-    const FastInverse path = grid.coordinatesOf(task.station, static_cast<std::size_t>(c), segment);
-    const propagation::AirColumn above(air, static_cast<float>(path.distance_m));
-    bool is_free = !(path.distance_m > 0);  // at the emitter itself
-    if (!is_free) {
-      const float ground_msl_m =
-          grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(task.station, task.ground, path);
-      const ColumnPosts posts(task, path, ground_msl_m, memory, thread);
-      DiffractionColumn<float, ColumnPosts> receivers(task.model.model, posts, task.model.tx_msl_m);
-      if (receivers.isUnknown()) {
-        is_unknown = true;
-        for (; k < end; ++k) set(k, NAN);
-      }
-      while (k < end && !is_free) {
-        float rx_msl_m[kReceivers], loss_db[kReceivers];
-#pragma unroll
-        for (int j = 0; j < kReceivers; ++j) {
-          rx_msl_m[j] = modelHeight_m(task.station, heightOf(k + j), path.distance_m);
-        }
-        is_free = receivers.losses(rx_msl_m, loss_db);
-#pragma unroll
-        for (int j = 0; j < kReceivers; ++j) {
-          if (k + j >= end) break;
-          if (!air.isClear()) loss_db[j] += above.lossDb(heightOf(k + j));
-          set(k + j, loss_db[j]);
-        }
-        k += kReceivers;
+/// Smooth-earth correction of a receiver (dB): the spherical earth's loss minus Bullington's, at least 0. A
+/// separate call.
+/// @param posts  the last of which is nearer than the receiver
+/// @param trend  with the maxima of the receiver
+/// @see P.526-15 eq. (68)
+__device__ __noinline__ float earthCorrectionDb(const DiffractionModel<float>& of, float sea_fraction,
+                                                const PathPost* posts, int last, float distance_m,
+                                                const TerrainTrend<float>& trend, float tx_m, float rx_m) {
+  const EffectiveHeights<float> heights = effectiveHeights(trend, tx_m, rx_m);
+  DiffractionModel<float> model = of;
+  model.earth.sea_fraction = sea_fraction;
+  const float spherical_db = sphericalEarthLossDb(model.earth, distance_m, heights.tx_m, heights.rx_m);
+  if (!(spherical_db > 0)) return 0;
+  if (last < 1) return spherical_db;
+  const auto lastBefore = [&](float range_m) {
+    int begin = 1, end = last;  // begin: the last known to be nearer, or 1
+    while (begin < end) {
+      const int middle = (begin + end + 1) / 2;
+      if (posts[middle].range_m < range_m) {
+        begin = middle;
+      } else {
+        end = middle - 1;
       }
     }
-    for (; k < end; ++k) set(k, air.isClear() ? 0 : above.lossDb(heightOf(k)));
-  }
-  if (is_unknown) markUnknown(task.to, c);
+    return begin;
+  };
+  int clear = lastBefore(distance_m * heights.tx_m / (heights.tx_m + heights.rx_m));
+  const float nu = smoothEarthNu(
+      model, [&](int i) { return posts[i].range_m; }, lastBefore, last, distance_m, heights, clear);
+  return fmaxf(spherical_db - propagation::bullingtonLossDb(nu, distance_m), 0);
 }
 
-/// @param left  null: all columns; else those that fillClear() left
-template <int kReceivers>
-__global__ void __launch_bounds__(kColumnThreads, 5)
-    diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
-                      const std::uint8_t* left, const __grid_constant__ ProfileMemory memory,
-                      const __grid_constant__ Tiles tiles) {
-  tiles.eachColumn(grid, [&](int task, int c, int thread) {
-    if (left != nullptr && left[task * grid.column_count + static_cast<std::size_t>(c)] == 0) return;
-    diffractionOfColumn<kReceivers>(tasks[task], grid, c, memory, thread);
-  });
-}
+/// The receivers over the end of a path. Heights are above the first post unless stated otherwise; "plain"
+/// values leave out the earth's bulge. Members are the same in all lanes, parameters named rx_m are a
+/// receiver's of each lane.
+class WarpColumn {
+ public:
+  /// @param memory  for the posts of the path
+  __device__ WarpColumn(const DiffractionTask& task, const WarpPath& path, float first_msl_m,
+                        float ground_msl_m, PathPost* memory)
+      : task_(task),
+        posts_(memory),
+        last_(path.posts - 1),
+        base_msl_m_(first_msl_m),
+        distance_m_(static_cast<float>(path.to.distance_m)),
+        ground_m_(ground_msl_m - base_msl_m_),
+        tx_m_(DiffractionModel<float>::raised_m(task.model.tx_msl_m - base_msl_m_, 0)),
+        edge_scale_(std::sqrt(2 * distance_m_ / task.model.model.earth.wavelength_m)),
+        half_curvature_(task.model.model.half_curvature),
+        sea_fraction_(task.model.model.earth.sea_fraction) {}
 
-/// Sets the excess of a column without keeping its posts.
-/// @return false: it was not set, because a receiver is not clear of the smooth earth
-template <int kReceivers>
-__device__ bool fillClearColumn(const DiffractionTask& task, const ExcessGrid& grid, int c) {
-  const auto column_index = static_cast<std::size_t>(c);
-  const auto set = [&](int k, float excess_db) {
-    task.to.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + column_index, excess_db);
-  };
-  const int lowest = grid.firstValid(column_index);
-  const auto setUnknown = [&] {
-    for (int k = lowest; k < grid.layers; ++k) set(k, NAN);
-    markUnknown(task.to, c);
-  };
-  for (int k = 0; k < lowest; ++k) set(k, 0);
-  if (grid.isWithoutGround(column_index)) {
-    setUnknown();
+  /// Reads the posts. @param lowest_m  of the lowest receiver
+  /// @return false if terrain is missing along the profile
+  __device__ bool read(WarpPosts& posts, float lowest_m) {
+    const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
+    float tx = -HUGE_VALF, clear = -HUGE_VALF, plain_tx = -HUGE_VALF;
+    float unknown = base_msl_m_ - base_msl_m_ + (ground_m_ - ground_m_);
+    PathPost* const memory = posts_;
+    __syncwarp();  // the last column was read
+    posts.each([&](int i, const PathPost& post) {
+      memory[i] = post;
+      unknown += post.height_msl_m - post.height_msl_m;
+      const Obstacle at = obstacleAt(post);
+      const float per_range = at.beyond_m * at.root;
+      tx = fmaxf(tx, per_range * (at.bulged_m * at.root));
+      clear = fmaxf(clear, per_range * fmaf(at.bulged_m, at.root, clearance));
+      plain_tx = fmaxf(plain_tx, per_range * (at.above_tx_m * at.root));
+    });
+    if (threadIdx.x % kWarpLanes == 0) memory[0] = {0, base_msl_m_};
+    tx_slope_ = largestOfWarp(tx);
+    clear_slope_ = largestOfWarp(clear);
+    plain_tx_slope_ = largestOfWarp(plain_tx);
+    __syncwarp();
+    if (!__all_sync(kAllLanes, unknown == 0)) return false;
+    const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
+    has_earth_ = !isClearThroughout(earth, distance_m_,
+                                    sightLine(earth, distance_m_, tx_m_, lowest_m - ground_m_));
+    if (has_earth_) findTrend();
     return true;
   }
-  if (lowest == grid.layers) return true;
 
-  const FastInverse path = grid.coordinatesOf(task.station, column_index, 0);
-  if (!(path.distance_m > 0)) return false;  // at the emitter itself
-  const GridColumn column = grid.columns[column_index];
-  const auto distance_m = static_cast<float>(path.distance_m);
-  const float base_msl_m = groundAt(task.station, task.ground, {0, path.sin_azimuth, path.cos_azimuth});
-  const propagation::DiffractionModel<float>& model = task.model.model;
-  const float tx_m = model.raised_m(task.model.tx_msl_m - base_msl_m, 0);
-  const float ground_m = grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] - base_msl_m : 0;
-  const auto heightMslOf = [&](int k) {
-    return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[min(k, grid.layers - 1)])));
-  };
-  const auto receiver_m = [&](int k) {
-    return model.raised_m(modelHeight_m(task.station, heightMslOf(k), path.distance_m) - base_msl_m,
-                          ground_m);
-  };
-  // The antennas are at least as high above the smooth earth as above their ground.
-  if (!isClearThroughout(model.earth, distance_m,
-                         sightLine(model.earth, distance_m, tx_m, receiver_m(lowest) - ground_m))) {
-    return false;
+  __device__ float receiver_m(float rx_msl_m) const {
+    return DiffractionModel<float>::raised_m(rx_msl_m - base_msl_m_, ground_m_);
   }
-  const propagation::AirColumn air(task.air, distance_m);
-  const int posts = task.ground.lastBefore(path.distance_m) + 1;
-  for (int first = lowest; first < grid.layers; first += kReceivers) {
-    float rx_m[kReceivers];
+
+  __device__ bool isLossy(float rx_m) const {
+    return slopeTo(rx_m) < clear_slope_ || (has_earth_ && !isClearOfEarth(rx_m));
+  }
+
+  /// Losses (dB) of the receivers of the first `count` lanes, which rise from lane to lane.
+  __device__ __noinline__ float losses(float rx_m, int count) {
+    const float slope = slopeTo(rx_m);
+    Maxima most;
+    const bool is_in_earth = has_earth_ && !isClearOfEarth(rx_m);
+    for (int first = 0; first < count;) {
+      const bool with_earth = __shfl_sync(kAllLanes, is_in_earth ? 1 : 0, first) != 0;  // the lowest decides
+      const int left = count - first;
+      if (left == 1) {
+        first = with_earth ? find<1, true>(slope, first, most) : find<1, false>(slope, first, most);
+      } else if (left <= 3 || with_earth) {
+        first = with_earth ? find<3, true>(slope, first, most) : find<3, false>(slope, first, most);
+      } else {
+        first = find<6, false>(slope, first, most);
+      }
+    }
+    const float above = tx_slope_ - slope;
+    const float relative = above >= 0 ? std::sqrt(fmaxf(above * most.edge, 0)) : most.edge;
+    float loss_db = propagation::bullingtonLossDb(edge_scale_ * relative, distance_m_);
+    if (is_in_earth) {
+      TerrainTrend<float> over = trend();
+      over.highest_m = most.plain_height_m;
+      over.tx_angle = plain_tx_slope_ - slope;
+      over.rx_angle = most.plain_rx_slope;
+      loss_db += earthCorrectionDb(task_.model.model, sea_fraction_, posts_, last_, distance_m_, over, tx_m_,
+                                   rx_m);
+    }
+    return loss_db;
+  }
+
+ private:
+  /// Of a receiver.
+  struct Maxima {
+    float edge = -HUGE_VALF;  ///< slope from it, of one below the steepest ray; else height over sqrt(d1 d2)
+    float plain_rx_slope = -HUGE_VALF, plain_height_m = -HUGE_VALF;
+  };
+  /// Terms of an obstacle.
+  struct Obstacle {
+    float range_m, beyond_m, product_m2, root;  ///< root: 1 / sqrt(product)
+    float above_tx_m, bulged_m;                 ///< the latter with the earth's bulge
+
+    __device__ float perBeyond() const { return root * root * range_m; }
+  };
+
+  __device__ float slopeTo(float rx_m) const { return (rx_m - tx_m_) / distance_m_; }
+  __device__ Obstacle obstacleAt(const PathPost& at) const {
+    Obstacle post;
+    post.range_m = at.range_m;
+    post.beyond_m = distance_m_ - post.range_m;
+    post.product_m2 = post.range_m * post.beyond_m;
+    post.root = rsqrtf(post.product_m2);
+    post.above_tx_m = at.height_msl_m - base_msl_m_ - tx_m_;
+    post.bulged_m = fmaf(half_curvature_, post.product_m2, post.above_tx_m);
+    return post;
+  }
+
+  /// The line fitted to the terrain, as propagation::TerrainSums, and the length over sea.
+  __device__ void findTrend() {
+    const PathPost* const posts = posts_;
+    float v1 = 0, v2 = 0, sea_m = 0;
+    for (int i = static_cast<int>(threadIdx.x) % kWarpLanes; i <= last_; i += kWarpLanes) {
+      const PathPost here = posts[i];
+      const PathPost next = i < last_ ? posts[i + 1] : PathPost{distance_m_, ground_m_ + base_msl_m_};
+      const float length_m = next.range_m - here.range_m;
+      const float height_m = here.height_msl_m - base_msl_m_, next_m = next.height_msl_m - base_msl_m_;
+      v1 = fmaf(length_m, height_m + next_m, v1);
+      v2 = fmaf(length_m,
+                next_m * (2 * next.range_m + here.range_m) + height_m * (next.range_m + 2 * here.range_m),
+                v2);
+      const float at_sea = (here.height_msl_m <= 0 ? 0.5f : 0) + (next.height_msl_m <= 0 ? 0.5f : 0);
+      sea_m = fmaf(length_m, at_sea, sea_m);
+    }
+    const propagation::TerrainSums sums{static_cast<double>(sumOfWarp(v1)),
+                                        static_cast<double>(sumOfWarp(v2))};
+    trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(distance_m_)));
+    trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(distance_m_)));
+    if (task_.model.model.sea_by_height) sea_fraction_ = sumOfWarp(sea_m) / distance_m_;
+  }
+
+  /// Finds the maxima of the receivers of kReceivers lanes from `first` on. @return the next lane
+  template <int kReceivers, bool kEarth>
+  __device__ int find(float slope_of_lane, int first, Maxima& of_lane) {
+    float slope[kReceivers], edge[kReceivers], plain_rx[kReceivers], plain[kReceivers];
+    bool is_below[kReceivers];
 #pragma unroll
-    for (int j = 0; j < kReceivers; ++j) rx_m[j] = receiver_m(first + j);
-    propagation::ObstacleMaxima<float, kReceivers> obstacles(model, distance_m, tx_m, rx_m);
-    float known = 0;  // NaN after a missing height
-    visitPosts(task.station, task.ground, path, posts, [&](int i, float height_msl_m) {
-      known += height_msl_m;
-      if (i > 0) obstacles.add(static_cast<float>(task.ground.ranges_m[i]), height_msl_m - base_msl_m);
-    });
-    if (isnan(known)) {
-      setUnknown();
-      return true;
+    for (int j = 0; j < kReceivers; ++j) {
+      slope[j] = __shfl_sync(kAllLanes, slope_of_lane, min(first + j, kWarpLanes - 1));
+      is_below[j] = slope[j] <= tx_slope_;
+      edge[j] = plain_rx[j] = plain[j] = -HUGE_VALF;
+    }
+    const PathPost* const posts = posts_;
+    const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
+#pragma unroll 2
+    for (int i = 1 + lane; i <= last_; i += kWarpLanes) {
+      const Obstacle post = obstacleAt(posts[i]);
+      const float per_beyond = post.perBeyond();
+#pragma unroll
+      for (int j = 0; j < kReceivers; ++j) {
+        const float above_m = fmaf(-slope[j], post.range_m, post.bulged_m);
+        edge[j] = fmaxf(edge[j], above_m * (is_below[j] ? per_beyond : post.root));
+        if constexpr (kEarth) {
+          const float plain_m = fmaf(-slope[j], post.range_m, post.above_tx_m);
+          plain_rx[j] = fmaxf(plain_rx[j], plain_m * per_beyond);
+          plain[j] = fmaxf(plain[j], plain_m);
+        }
+      }
     }
 #pragma unroll
     for (int j = 0; j < kReceivers; ++j) {
-      if (first + j >= grid.layers) break;
-      const float air_db = task.air.isClear() ? 0 : air.lossDb(heightMslOf(first + j));
-      set(first + j, obstacles.lossDb(model, j) + air_db);
+      Maxima most{largestOfWarp(edge[j])};
+      if constexpr (kEarth) {
+        most.plain_rx_slope = largestOfWarp(plain_rx[j]);
+        most.plain_height_m = largestOfWarp(plain[j]);
+      }
+      if (lane == first + j) of_lane = most;
+    }
+    return first + kReceivers;
+  }
+  __device__ TerrainTrend<float> trend() const {
+    TerrainTrend<float> trend;
+    trend.start_msl_m = trend_start_m_;
+    trend.end_msl_m = trend_end_m_;
+    trend.highest_m = trend.tx_angle = trend.rx_angle = -HUGE_VALF;
+    trend.tx_ground_msl_m = 0;
+    trend.rx_ground_msl_m = ground_m_;
+    return trend;
+  }
+  /// True if the smooth earth has no loss for a receiver and those above; see LaneColumn.
+  __device__ bool isClearOfEarth(float rx_m) const {
+    const EffectiveHeights<float> least = effectiveHeights(trend(), tx_m_, rx_m);
+    const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
+    return isClearThroughout(earth, distance_m_, sightLine(earth, distance_m_, least.tx_m, least.rx_m));
+  }
+
+  const DiffractionTask& task_;
+  PathPost* posts_;
+  int last_;  ///< the last one before the receivers
+  float base_msl_m_, distance_m_, ground_m_, tx_m_;
+  float edge_scale_;  ///< from heights over sqrt(d1 d2) to nu
+  float half_curvature_, sea_fraction_;
+  bool has_earth_ = false;             ///< the ground alone does not prove that the smooth earth has no loss
+  float tx_slope_ = -HUGE_VALF;        ///< largest slope from the transmitter to an obstacle
+  float clear_slope_ = -HUGE_VALF;     ///< of the lowest line of sight that all obstacles are clear of
+  float plain_tx_slope_ = -HUGE_VALF;  ///< tx_slope without the earth's bulge
+  float trend_start_m_ = 0, trend_end_m_ = 0;  ///< the line fitted to the terrain, with has_earth_
+};
+
+/// Losses of a voxel besides diffraction.
+struct OtherLosses {
+  const DiffractionTask& task;
+  propagation::AirColumn air;
+  float distance_m, ground_msl_m;
+
+  __device__ OtherLosses(const DiffractionTask& of, double path_m, float ground_m)
+      : task(of), air(of.air, static_cast<float>(path_m)), distance_m(static_cast<float>(path_m)),
+        ground_msl_m(ground_m) {}
+  __device__ float lossDb(float height_msl_m) const {
+    float loss_db = task.air.isClear() ? 0 : air.lossDb(height_msl_m);
+    if (task.terminal.isSet()) loss_db += task.terminal.lossDb(distance_m, height_msl_m - ground_msl_m);
+    return loss_db;
+  }
+};
+
+/// A task over a grid.
+struct Filler {
+  const DiffractionTask& task;
+  const ExcessGrid& grid;
+
+  __device__ void set(int k, int c, float excess_db) const {
+    task.to.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + static_cast<std::size_t>(c),
+                           excess_db);
+  }
+  __device__ float groundBelow(int c, const FastInverse& path) const {
+    return grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAtEnd(task, path);
+  }
+};
+
+/// Fills all voxels by the losses besides diffraction, a thread a column.
+__global__ void __launch_bounds__(kColumnThreads)
+    othersKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid) {
+  const int c = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  const auto column_index = static_cast<std::size_t>(c);
+  if (column_index >= grid.column_count) return;
+  const Filler filler{tasks[blockIdx.y], grid};
+  const DiffractionTask& task = filler.task;
+  const int lowest = grid.firstValid(column_index);
+  const bool has_others = !task.air.isClear() || task.terminal.isSet();
+  for (int k = 0; k < (has_others ? lowest : grid.layers); ++k) filler.set(k, c, 0);
+  if (!has_others || lowest == grid.layers) return;
+  const GridColumn column = grid.columns[column_index];
+  for (int segment = 0; segment < grid.segments; ++segment) {
+    const FastInverse path = grid.coordinatesOf(task.station, column_index, segment);
+    const OtherLosses others(task, path.distance_m,
+                             task.terminal.isSet() ? filler.groundBelow(c, path) : 0);
+    for (int k = max(lowest, grid.firstLayer(segment)); k < grid.firstLayer(segment + 1); ++k) {
+      const auto height_msl_m = static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[k])));
+      filler.set(k, c, others.lossDb(height_msl_m));
     }
   }
-  return true;
 }
 
-template <int kReceivers>
-__global__ void __launch_bounds__(kColumnThreads, 5)
-    clearColumnsKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
-                       const __grid_constant__ Tiles tiles, std::uint8_t* left, unsigned* left_count) {
-  tiles.eachColumn(grid, [&](int task, int c, int) {
-    const bool is_left = !fillClearColumn<kReceivers>(tasks[task], grid, c);
-    left[task * grid.column_count + static_cast<std::size_t>(c)] = is_left ? 1 : 0;
-    if (is_left) atomicAdd(left_count, 1u);
-  });
-}
-
-/// Calls f with the first of some numbers, as a std::integral_constant, that is not below `receivers`.
-template <int kFirst, int... kOthers, class Function>
-void withReceivers(int receivers, const Function& f) {
-  if constexpr (sizeof...(kOthers) > 0) {
-    if (receivers > kFirst) return withReceivers<kOthers...>(receivers, f);
+/// A segment of a column, by a warp.
+__device__ void fillSegment(const Filler& filler, int c, int segment, const WarpPath& path, WarpPosts& posts,
+                            PathPost* memory) {
+  const DiffractionTask& task = filler.task;
+  const ExcessGrid& grid = filler.grid;
+  const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
+  const int end = grid.firstLayer(segment + 1);
+  const int lowest = max(grid.firstValid(static_cast<std::size_t>(c)), grid.firstLayer(segment));
+  if (lowest >= end) return;
+  const auto heightOf = [&](int k) {
+    const double t_m = static_cast<double>(grid.t_m[min(k, end - 1)]);
+    return static_cast<float>(heightMsl_m(grid.columns[static_cast<std::size_t>(c)], t_m));
+  };
+  const double range_m = path.to.distance_m;
+  const float ground_msl_m = filler.groundBelow(c, path.to);
+  WarpColumn receivers(task, path, posts.firstHeight_m(), ground_msl_m, memory);
+  const auto receiver_m = [&](float height_msl_m) {
+    return receivers.receiver_m(task.station.refraction.exponential
+                                    ? effectiveHeight_m(task.station, height_msl_m, range_m)
+                                    : height_msl_m);
+  };
+  float rx_m = receiver_m(heightOf(lowest + lane));
+  if (!receivers.read(posts, __shfl_sync(kAllLanes, rx_m, 0))) {
+    for (int k = lowest + lane; k < end; k += kWarpLanes) filler.set(k, c, NAN);
+    if (lane == 0) markUnknown(task.to, c);
+    return;
   }
-  f(std::integral_constant<int, kFirst>());
+  for (int first = lowest; first < end; first += kWarpLanes) {
+    const float height_msl_m = heightOf(first + lane);
+    if (first > lowest) rx_m = receiver_m(height_msl_m);
+    const int count = __popc(__ballot_sync(kAllLanes, first + lane < end && receivers.isLossy(rx_m)));
+    if (count == 0) return;
+    const float loss_db = receivers.losses(rx_m, count);
+    if (lane < count) {
+      const OtherLosses others(task, range_m, ground_msl_m);
+      filler.set(first + lane, c, loss_db + others.lossDb(height_msl_m));
+    }
+    if (count < kWarpLanes) return;
+  }
+}
+
+__global__ void __launch_bounds__(kColumnThreads, 6)
+    diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
+                      const __grid_constant__ WarpTiles tiles, const __grid_constant__ PathMemory memory) {
+  PathPost* const posts_memory = memory.ofWarp();
+  const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
+  tiles.eachTile([&](int number, int tile) {
+    const Filler filler{tasks[number], grid};
+    const DiffractionTask& task = filler.task;
+    const int mine = lane < WarpMemory::kPaths ? tiles.columnOf(grid, tile, lane) : -1;
+    if (mine >= 0 && grid.isWithoutGround(static_cast<std::size_t>(mine))) {
+      for (int k = grid.firstValid(static_cast<std::size_t>(mine)); k < grid.layers; ++k)
+        filler.set(k, mine, NAN);
+      markUnknown(task.to, mine);
+    }
+    for (int segment = 0; segment < grid.segments; ++segment) {
+      eachPath(
+          task.station, task.ground, grid, tiles, tile, segment, warpMemory(),
+          [&](int c) {
+            const auto column = static_cast<std::size_t>(c);
+            return !grid.isWithoutGround(column) && grid.firstValid(column) < grid.layers;
+          },
+          [&](int c, const WarpPath& path, WarpPosts posts) {
+            fillSegment(filler, c, segment, path, posts, posts_memory);
+          });
+    }
+  });
 }
 
 }  // namespace
 
 void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
-                     const std::uint8_t* left, const ScratchMemory& scratch, cudaStream_t stream) {
-  const Tiles tiles(grid, row, count);
-  const ProfileMemory memory(scratch, ranges);
-  const auto blocks = static_cast<unsigned>(std::min(tiles.count(), memory.threads() / kColumnThreads));
-  const auto launch = [&](auto kernel) {
-    kernel<<<blocks, kColumnThreads, 0, stream>>>(tasks, grid, left, memory, tiles);
-  };
-  if (grid.layers == 1) {
-    launch(diffractionKernel<1>);
-  } else {
-    launch(diffractionKernel<propagation::kDiffractionReceivers>);
-  }
+                     const ScratchMemory& scratch, cudaStream_t stream) {
+  const auto columns = static_cast<unsigned>(grid.column_count);
+  othersKernel<<<dim3((columns + kColumnThreads - 1) / kColumnThreads, static_cast<unsigned>(count)),
+                 kColumnThreads, 0, stream>>>(tasks, grid);
+  emscape::cuda::checkLaunch("losses besides diffraction");
+  const WarpTiles tiles(grid, row, count);
+  const PathMemory memory(scratch, ranges);
+  emscape::cuda::check(cudaFuncSetAttribute(diffractionKernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                            static_cast<int>(memory.sharedBytes())),
+                       "cudaFuncSetAttribute");
+  diffractionKernel<<<tiles.blocks(memory.mostBlocks()), kColumnThreads, memory.sharedBytes(), stream>>>(
+      tasks, grid, tiles, memory);
   emscape::cuda::checkLaunch("diffraction");
-}
-
-void fillClear(const DiffractionTask* tasks, int count, const ExcessGrid& grid, int row, std::uint8_t* left,
-               unsigned* left_count, cudaStream_t stream) {
-  const Tiles tiles(grid, row, count);
-  const auto blocks = static_cast<unsigned>(tiles.count());
-  constexpr int kMost = 8;
-  const int passes = (grid.layers + kMost - 1) / kMost;
-  withReceivers<1, 2, 4, 6, kMost>((grid.layers + passes - 1) / passes, [&](auto receivers) {
-    clearColumnsKernel<receivers()>
-        <<<blocks, kColumnThreads, 0, stream>>>(tasks, grid, tiles, left, left_count);
-  });
-  emscape::cuda::checkLaunch("diffraction of clear columns");
 }
 
 }  // namespace emscape::emfield::cuda

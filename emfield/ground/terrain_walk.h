@@ -138,20 +138,23 @@ class TerrainWalk {
     per_m_ = chord_m_ > 0 ? 1 / chord_m_ : 0;
   }
 
-  /// Range at which the chord of a range ends; infinity for the last chord.
-  EMSCAPE_HD double endOfChord_m(double range_m) const {
-    const int index = indexOf(range_m);
-    return index < last_ ? (index + 1) * chord_m_ : HUGE_VAL;
-  }
-  /// The chord that contains a range; ranges must not decrease from one call to the next.
-  EMSCAPE_HD const TerrainChord& chordAt(double range_m) {
-    const int index = indexOf(range_m);
+  EMSCAPE_HD int chords() const { return last_ + 1; }
+  EMSCAPE_HD double chord_m() const { return chord_m_; }
+  /// Chord `index`, not before that of the last call.
+  EMSCAPE_HD const TerrainChord& chord(int index) {
     if (index != index_) {
       setChord(index);
       index_ = index;
     }
     return chord_;
   }
+  /// Range at which the chord of a range ends; infinity for the last chord.
+  EMSCAPE_HD double endOfChord_m(double range_m) const {
+    const int index = indexOf(range_m);
+    return index < last_ ? (index + 1) * chord_m_ : HUGE_VAL;
+  }
+  /// The chord that contains a range; ranges must not decrease from one call to the next.
+  EMSCAPE_HD const TerrainChord& chordAt(double range_m) { return chord(indexOf(range_m)); }
   EMSCAPE_HD float heightAt(double range_m) { return chordAt(range_m).heightAt(terrain_, range_m); }
 
  private:

@@ -1,0 +1,277 @@
+/// Paths over the ground, each read by a warp whose lanes hold posts; for nvcc.
+///
+/// A warp prepares some columns at a time, a lane a column or a chord, because the geodesy of a path takes as
+/// many instructions as hundreds of its posts.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <algorithm>
+
+#include "emfield/cuda/column_tiles.h"
+
+namespace emscape::emfield::cuda {
+
+constexpr unsigned kAllLanes = 0xffffffffu;
+constexpr int kWarpLanes = 32;
+
+/// The largest value of the lanes, in all of them; no value is NaN.
+__device__ inline float largestOfWarp(float value) {
+  // As integers in the same order.
+  const auto ordered = [](int bits) { return bits >= 0 ? bits : bits ^ 0x7fffffff; };
+  return __int_as_float(ordered(__reduce_max_sync(kAllLanes, ordered(__float_as_int(value)))));
+}
+__device__ inline float sumOfWarp(float value) {
+  for (int step = kWarpLanes / 2; step > 0; step /= 2) value += __shfl_xor_sync(kAllLanes, value, step);
+  return value;
+}
+
+/// The path to a segment of a column.
+struct WarpPath {
+  FastInverse to;
+  int posts;   ///< nearer than the column, with the emitter's; 0: there is no path
+  int chords;  ///< of a walk
+};
+
+/// A part of a path: posts first..end - 1.
+struct WarpChord {
+  TerrainChord chord;
+  int first, end;
+};
+
+/// Paths and chords of a warp, in shared memory, which is not initialised.
+struct WarpMemory {
+  static constexpr int kPaths = 16;
+
+  WarpPath paths[kPaths];
+  WarpChord chords[kPaths];
+};
+/// Memory of a warp, of a block of kColumnThreads.
+__device__ inline WarpMemory& warpMemory() {
+  __shared__ alignas(WarpMemory) unsigned char memory[kColumnThreads / kWarpLanes * sizeof(WarpMemory)];
+  return reinterpret_cast<WarpMemory*>(memory)[threadIdx.x / kWarpLanes];
+}
+
+/// A separate call, so that its registers are not part of those of the loops over posts.
+__device__ __noinline__ inline void prepareChord(const Station& station, const GroundPosts& ground,
+                                                 const WarpPath& path, int number, WarpChord& to) {
+  if (!ground.is_smooth) {
+    TerrainWalk walk(station, ground.terrain, path.to);
+    to.chord = walk.chord(number);
+    const auto postsBefore = [&](double range_m) { return min(ground.lastBefore(range_m) + 1, path.posts); };
+    to.first = number == 0 ? 0 : postsBefore(number * walk.chord_m());
+    to.end = number + 1 == path.chords ? path.posts : postsBefore((number + 1) * walk.chord_m());
+  } else {
+    to.first = 0;
+    to.end = path.posts;
+  }
+}
+
+/// Some chords of a path, by a warp.
+__device__ __noinline__ inline void prepareChords(const Station& station, const GroundPosts& ground,
+                                                  const WarpPath& path, int begin, int end, WarpChord* to) {
+  __syncwarp();
+  const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
+  if (begin + lane < end) prepareChord(station, ground, path, begin + lane, to[lane]);
+  __syncwarp();
+}
+
+/// Where the finest raster has no height.
+__device__ __noinline__ inline float heightAmongRasters(const GroundPosts& ground, const TerrainChord& chord,
+                                                        double range_m) {
+  return chord.heightAmongRasters(ground.terrain, range_m);
+}
+
+/// Height of the clutter at a post, if it is an obstacle.
+__device__ __noinline__ inline float clutterAt(const GroundPosts& ground, const TerrainChord& chord,
+                                               double range_m, double distance_m, float ground_msl_m) {
+  if (!(range_m > kClutterFree_m && range_m < distance_m - kClutterFree_m)) return 0;
+  const double part = (range_m - chord.in_raster.begin_m) * chord.in_raster.per_m;
+  const float cover_m = ground.terrain.coverAt(chord.position.latitude_rad.at(part),
+                                               chord.position.longitude_rad.at(part), ground_msl_m);
+  return cover_m > 0 ? cover_m : 0;
+}
+
+/// A post of a path.
+struct PathPost {
+  float range_m, height_msl_m;
+};
+
+/// Memory for the posts of a warp's path, one after another: shared memory, or memory of the device where
+/// that has no room.
+class PathMemory {
+ public:
+  static constexpr int kMostShared = 3000;
+
+  /// @param posts  of the longest path
+  PathMemory(const ScratchMemory& scratch, int posts) : posts_(posts) {
+    if (posts <= kMostShared) return;
+    const std::size_t bytes_each = static_cast<std::size_t>(posts) * sizeof(PathPost) * kWarps;
+    blocks_ = static_cast<int>(std::min<std::size_t>(scratch.bytes / bytes_each, 1 << 20));
+    if (blocks_ == 0) throwTooSmall(bytes_each / kColumnThreads, scratch.bytes);
+    scratch_ = static_cast<PathPost*>(scratch.data);
+  }
+  /// Of a kernel: its blocks, at most, and their shared memory.
+  int mostBlocks() const { return blocks_; }
+  std::size_t sharedBytes() const { return scratch_ == nullptr ? sizeof(PathPost) * posts_ * kWarps : 0; }
+
+  __device__ PathPost* ofWarp() const {
+    extern __shared__ PathPost shared_posts[];
+    const int warp = static_cast<int>(threadIdx.x) / kWarpLanes;
+    if (scratch_ == nullptr) return shared_posts + warp * posts_;
+    return scratch_ + static_cast<long long>(blockIdx.x * kWarps + warp) * posts_;
+  }
+
+ private:
+  static constexpr int kWarps = kColumnThreads / kWarpLanes;
+
+  int posts_;
+  int blocks_ = 1 << 30;
+  PathPost* scratch_ = nullptr;
+};
+
+/// Of a path's length, at most: a post may be at the receivers in float.
+constexpr float kNearerThanEnd = 1 - 2.4e-7f;
+
+/// Reads the posts of a path, the first of which is the emitter's. All lanes of the warp call its functions
+/// together.
+class WarpPosts {
+ public:
+  /// @param chords   room for WarpMemory::kPaths
+  /// @param first    index of the path's first chord there
+  /// @param prepared number of the path's chords that are there
+  __device__ WarpPosts(const Station& station, const GroundPosts& ground, const WarpPath& path,
+                       WarpChord* chords, int first, int prepared)
+      : station_(station), ground_(ground), path_(path), chords_(chords), first_(first), end_(prepared) {}
+
+  /// Height (m above mean sea level) of the ground below the emitter, in all lanes.
+  __device__ float firstHeight_m() const {
+    if (ground_.is_smooth) return 0;
+    const TerrainChord& chord = chords_[first_].chord;
+    const float height_msl_m = chord.in_raster.corner_msl_m != nullptr ? chord.in_raster.heightAt(0) : NAN;
+    return isnan(height_msl_m) ? heightAmongRasters(ground_, chord, 0) : height_msl_m;
+  }
+
+  /// Calls visit(post, PathPost) for the posts between emitter and receivers, 1..posts - 1, each in one lane.
+  template <class Visit>
+  __device__ void each(const Visit& visit) {
+    const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
+    const double* const ranges_m = ground_.ranges_m;
+    const bool is_smooth = ground_.is_smooth, is_raised = ground_.is_raised;
+    const int chords = path_.chords;
+    const float farthest_m = static_cast<float>(path_.to.distance_m) * kNearerThanEnd;
+    for (int n = 0; n < chords; ++n) {
+      if (n < begin_ || n >= end_) prepareFrom(n);
+      const WarpChord& part = chords_[first_ + n - begin_];
+      const int end = part.end;
+      const RasterChord in_raster = part.chord.in_raster;
+#pragma unroll 1
+      for (int i = max(part.first, 1) + lane; i < end; i += kWarpLanes) {
+        const double range_m = ranges_m[i];
+        float height_msl_m = 0;
+        if (!is_smooth) {
+          height_msl_m = in_raster.corner_msl_m != nullptr ? in_raster.heightAt(range_m) : NAN;
+          if (isnan(height_msl_m)) height_msl_m = heightAmongRasters(ground_, part.chord, range_m);
+          if (is_raised)
+            height_msl_m += clutterAt(ground_, part.chord, range_m, path_.to.distance_m, height_msl_m);
+        }
+        visit(i, PathPost{fminf(static_cast<float>(range_m), farthest_m), height_msl_m});
+      }
+    }
+  }
+
+ private:
+  /// Of paths with many chords.
+  __device__ void prepareFrom(int number) {
+    first_ = 0;
+    begin_ = number;
+    end_ = min(number + WarpMemory::kPaths, path_.chords);
+    prepareChords(station_, ground_, path_, begin_, end_, chords_);
+  }
+
+  const Station& station_;
+  const GroundPosts& ground_;
+  const WarpPath& path_;
+  WarpChord* chords_;
+  int first_, begin_ = 0, end_;  ///< chords begin_..end_ - 1 are in chords_ from first_ on
+};
+
+/// Columns of a warp: square, because they share more data than those of a row.
+constexpr int kWarpColumns = 4;
+static_assert(kWarpColumns * kWarpColumns == WarpMemory::kPaths);
+
+/// Tiles of kWarpColumns x kWarpColumns columns over a grid's rows, of all tasks; a warp each.
+class WarpTiles {
+ public:
+  /// @param row  columns along x
+  WarpTiles(const ExcessGrid& grid, int row, int tasks) : row_(row) {
+    const int rows = static_cast<int>(grid.column_count) / row;
+    along_x_ = (row + kWarpColumns - 1) / kWarpColumns;
+    of_task_ = along_x_ * ((rows + kWarpColumns - 1) / kWarpColumns);
+    count_ = static_cast<long long>(of_task_) * tasks;
+  }
+  /// For one tile per warp. @param most  blocks, each of which then has several
+  unsigned blocks(int most = 1 << 30) const {
+    constexpr int kWarps = kColumnThreads / kWarpLanes;
+    return static_cast<unsigned>(std::min<long long>((count_ + kWarps - 1) / kWarps, most));
+  }
+  /// Calls f(task, tile) for the tiles of a warp.
+  template <class Function>
+  __device__ void eachTile(const Function& f) const {
+    const long long warps = static_cast<long long>(gridDim.x) * blockDim.x / kWarpLanes;
+    for (long long n = (static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x) / kWarpLanes;
+         n < count_; n += warps) {
+      f(static_cast<int>(n / of_task_), static_cast<int>(n % of_task_));
+    }
+  }
+  /// A column of a tile, 0..WarpMemory::kPaths - 1; -1: outside the grid.
+  __device__ int columnOf(const ExcessGrid& grid, int tile, int n) const {
+    const int x = tile % along_x_ * kWarpColumns + n % kWarpColumns;
+    const int y = tile / along_x_ * kWarpColumns + n / kWarpColumns;
+    return x < row_ && static_cast<std::size_t>(y) * row_ < grid.column_count ? y * row_ + x : -1;
+  }
+
+ private:
+  int row_, along_x_, of_task_;
+  long long count_;
+};
+
+/// Calls visit(column, path, WarpPosts) for the columns of a warp's tile that have a path, each by all lanes.
+/// @param has_path(column)  false: without a path to it
+template <class HasPath, class Visit>
+__device__ void eachPath(const Station& station, const GroundPosts& ground, const ExcessGrid& grid,
+                         const WarpTiles& tiles, int tile, int segment, WarpMemory& memory,
+                         const HasPath& has_path, const Visit& visit) {
+  const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
+  constexpr int kPaths = WarpMemory::kPaths;
+  int chords = 0;
+  __syncwarp();
+  if (lane < kPaths) {
+    WarpPath path{};
+    const int c = tiles.columnOf(grid, tile, lane);
+    if (c >= 0 && has_path(c)) path.to = grid.coordinatesOf(station, static_cast<std::size_t>(c), segment);
+    if (path.to.distance_m > 0) {
+      path.posts = ground.lastBefore(path.to.distance_m) + 1;
+      path.chords = chords = ground.is_smooth ? 1 : TerrainWalk(station, ground.terrain, path.to).chords();
+    }
+    memory.paths[lane] = path;
+  }
+  const int most = __reduce_max_sync(kAllLanes, chords);
+  if (most == 0) return;
+  const int room = min(most, kPaths), together = kPaths / room;
+  for (int first = 0; first < kPaths; first += together) {
+    __syncwarp();
+    const int mine = first + lane / room, number = lane % room;
+    if (lane < together * room && mine < kPaths && number < memory.paths[mine].chords)
+      prepareChord(station, ground, memory.paths[mine], number, memory.chords[lane]);
+    __syncwarp();
+    for (int n = first; n < min(first + together, kPaths); ++n) {
+      const WarpPath& path = memory.paths[n];
+      if (path.posts == 0) continue;
+      visit(tiles.columnOf(grid, tile, n), path,
+            WarpPosts(station, ground, path, memory.chords, (n - first) * room, min(path.chords, room)));
+    }
+  }
+}
+
+}  // namespace emscape::emfield::cuda
