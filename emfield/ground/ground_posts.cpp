@@ -25,6 +25,13 @@ GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<doub
   if (terrain != nullptr) ground.terrain = terrain->view();
   ground.ranges_m = ranges_m.data();
   ground.range_count = static_cast<int>(ranges_m.size());
+  if (terrain != nullptr) {
+    constexpr double kOwnCell = 1.5, kMaxPerPost = 4;  // posts of the terrain
+    const double near_m = kOwnCell * terrain->postSpacing_m();
+    ground.near_count =
+        static_cast<int>(std::lower_bound(ranges_m.begin(), ranges_m.end(), near_m) - ranges_m.begin());
+    ground.crossings_per_m = kMaxPerPost / terrain->postSpacing_m();
+  }
   return ground;
 }
 

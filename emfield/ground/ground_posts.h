@@ -31,8 +31,17 @@ struct GroundPosts {
   bool is_smooth = true;  ///< a smooth earth at mean sea level; there is no terrain
   const double* ranges_m = nullptr;
   int range_count = 0;
+  /// For profiles with posts at crossings (chord_crossings.h): number of the posts in the emitter's own cell.
+  int near_count = 0;
+  /// Chords with more crossings than this have regular posts; see maxCrossings().
+  double crossings_per_m = 0;
   bool is_raised = false;  ///< profiles are raised by the clutter of the land cover; see raiseByClutter()
 
+  /// Largest number of crossings of a chord of some length that are read.
+  EMSCAPE_HD int maxCrossings(double chord_m) const {
+    constexpr int kOfShortChord = 8;
+    return kOfShortChord + static_cast<int>(crossings_per_m * chord_m);
+  }
   /// Index of the last post nearer than a range; 0 if there is none. Most posts are equally far apart: an
   /// estimate from the last one, then a few steps.
   EMSCAPE_HD int lastBefore(double range_m) const {
