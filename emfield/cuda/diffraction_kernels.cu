@@ -67,48 +67,27 @@ __device__ __noinline__ float earthCorrectionDb(const DiffractionModel<float>& o
 /// receiver's of each lane.
 class WarpColumn {
  public:
-  /// @param memory  for the posts of the path
-  __device__ WarpColumn(const DiffractionTask& task, const WarpPath& path, float first_msl_m,
-                        float ground_msl_m, PathPost* memory)
+  /// @param posts  from the emitter's on
+  __device__ WarpColumn(const DiffractionTask& task, const PathPost* posts, int count, float distance_m,
+                        float ground_msl_m)
       : task_(task),
-        posts_(memory),
-        last_(path.posts - 1),
-        base_msl_m_(first_msl_m),
-        distance_m_(static_cast<float>(path.to.distance_m)),
+        posts_(posts),
+        last_(count - 1),
+        base_msl_m_(posts[0].height_msl_m),
+        distance_m_(distance_m),
         ground_m_(ground_msl_m - base_msl_m_),
         tx_m_(DiffractionModel<float>::raised_m(task.model.tx_msl_m - base_msl_m_, 0)),
         edge_scale_(std::sqrt(2 * distance_m_ / task.model.model.earth.wavelength_m)),
         half_curvature_(task.model.model.half_curvature),
         sea_fraction_(task.model.model.earth.sea_fraction) {}
 
-  /// Reads the posts. @param lowest_m  of the lowest receiver
+  /// The first pass. @param lowest_m  of the lowest receiver
   /// @return false if terrain is missing along the profile
-  __device__ bool read(WarpPosts& posts, float lowest_m) {
-    const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
-    float tx = -HUGE_VALF, clear = -HUGE_VALF, plain_tx = -HUGE_VALF;
-    float unknown = base_msl_m_ - base_msl_m_ + (ground_m_ - ground_m_);
-    PathPost* const memory = posts_;
-    __syncwarp();  // the last column was read
-    posts.each([&](int i, const PathPost& post) {
-      memory[i] = post;
-      unknown += post.height_msl_m - post.height_msl_m;
-      const Obstacle at = obstacleAt(post);
-      const float per_range = at.beyond_m * at.root;
-      tx = fmaxf(tx, per_range * (at.bulged_m * at.root));
-      clear = fmaxf(clear, per_range * fmaf(at.bulged_m, at.root, clearance));
-      plain_tx = fmaxf(plain_tx, per_range * (at.above_tx_m * at.root));
-    });
-    if (threadIdx.x % kWarpLanes == 0) memory[0] = {0, base_msl_m_};
-    tx_slope_ = largestOfWarp(tx);
-    clear_slope_ = largestOfWarp(clear);
-    plain_tx_slope_ = largestOfWarp(plain_tx);
-    __syncwarp();
-    if (!__all_sync(kAllLanes, unknown == 0)) return false;
+  __device__ bool survey(float lowest_m) {
     const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
     has_earth_ = !isClearThroughout(earth, distance_m_,
                                     sightLine(earth, distance_m_, tx_m_, lowest_m - ground_m_));
-    if (has_earth_) findTrend();
-    return true;
+    return has_earth_ ? surveyPosts<true>() : surveyPosts<false>();
   }
 
   __device__ float receiver_m(float rx_msl_m) const {
@@ -175,27 +154,49 @@ class WarpColumn {
     return post;
   }
 
-  /// The line fitted to the terrain, as propagation::TerrainSums, and the length over sea.
-  __device__ void findTrend() {
+  /// @tparam kEarth  also for the smooth earth
+  template <bool kEarth>
+  __device__ bool surveyPosts() {
     const PathPost* const posts = posts_;
+    const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
+    float tx = -HUGE_VALF, clear = -HUGE_VALF, plain_tx = -HUGE_VALF;
+    float unknown = base_msl_m_ - base_msl_m_ + (ground_m_ - ground_m_);
     float v1 = 0, v2 = 0, sea_m = 0;
-    for (int i = static_cast<int>(threadIdx.x) % kWarpLanes; i <= last_; i += kWarpLanes) {
-      const PathPost here = posts[i];
-      const PathPost next = i < last_ ? posts[i + 1] : PathPost{distance_m_, ground_m_ + base_msl_m_};
-      const float length_m = next.range_m - here.range_m;
-      const float height_m = here.height_msl_m - base_msl_m_, next_m = next.height_msl_m - base_msl_m_;
-      v1 = fmaf(length_m, height_m + next_m, v1);
-      v2 = fmaf(length_m,
-                next_m * (2 * next.range_m + here.range_m) + height_m * (next.range_m + 2 * here.range_m),
-                v2);
-      const float at_sea = (here.height_msl_m <= 0 ? 0.5f : 0) + (next.height_msl_m <= 0 ? 0.5f : 0);
-      sea_m = fmaf(length_m, at_sea, sea_m);
+#pragma unroll 2
+    for (int i = 1 + static_cast<int>(threadIdx.x) % kWarpLanes; i <= last_; i += kWarpLanes) {
+      const PathPost at = posts[i];
+      unknown += at.height_msl_m - at.height_msl_m;
+      const Obstacle post = obstacleAt(at);
+      const float per_range = post.beyond_m * post.root;
+      tx = fmaxf(tx, per_range * (post.bulged_m * post.root));
+      clear = fmaxf(clear, per_range * fmaf(post.bulged_m, post.root, clearance));
+      if constexpr (kEarth) {
+        plain_tx = fmaxf(plain_tx, per_range * (post.above_tx_m * post.root));
+        addToTrend(posts[i - 1], at, v1, v2, sea_m);
+      }
     }
-    const propagation::TerrainSums sums{static_cast<double>(sumOfWarp(v1)),
-                                        static_cast<double>(sumOfWarp(v2))};
-    trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(distance_m_)));
-    trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(distance_m_)));
-    if (task_.model.model.sea_by_height) sea_fraction_ = sumOfWarp(sea_m) / distance_m_;
+    tx_slope_ = largestOfWarp(tx);
+    clear_slope_ = largestOfWarp(clear);
+    if constexpr (kEarth) {
+      plain_tx_slope_ = largestOfWarp(plain_tx);
+      if (threadIdx.x % kWarpLanes == 0)
+        addToTrend(posts[last_], {distance_m_, ground_m_ + base_msl_m_}, v1, v2, sea_m);
+      const propagation::TerrainSums sums{static_cast<double>(sumOfWarp(v1)),
+                                          static_cast<double>(sumOfWarp(v2))};
+      trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(distance_m_)));
+      trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(distance_m_)));
+      if (task_.model.model.sea_by_height) sea_fraction_ = sumOfWarp(sea_m) / distance_m_;
+    }
+    return __all_sync(kAllLanes, unknown == 0);
+  }
+  /// Adds the interval between two posts to propagation::TerrainSums, and to the length over sea.
+  __device__ void addToTrend(const PathPost& from, const PathPost& to, float& v1, float& v2,
+                             float& sea_m) const {
+    const float length_m = to.range_m - from.range_m;
+    const float from_m = from.height_msl_m - base_msl_m_, to_m = to.height_msl_m - base_msl_m_;
+    v1 = fmaf(length_m, from_m + to_m, v1);
+    v2 = fmaf(length_m, to_m * (2 * to.range_m + from.range_m) + from_m * (to.range_m + 2 * from.range_m), v2);
+    sea_m = fmaf(length_m, (from.height_msl_m <= 0 ? 0.5f : 0) + (to.height_msl_m <= 0 ? 0.5f : 0), sea_m);
   }
 
   /// Finds the maxima of the receivers of kReceivers lanes from `first` on. @return the next lane
@@ -254,7 +255,7 @@ class WarpColumn {
   }
 
   const DiffractionTask& task_;
-  PathPost* posts_;
+  const PathPost* posts_;
   int last_;  ///< the last one before the receivers
   float base_msl_m_, distance_m_, ground_m_, tx_m_;
   float edge_scale_;  ///< from heights over sqrt(d1 d2) to nu
@@ -335,14 +336,15 @@ __device__ void fillSegment(const Filler& filler, int c, int segment, const Warp
   };
   const double range_m = path.to.distance_m;
   const float ground_msl_m = filler.groundBelow(c, path.to);
-  WarpColumn receivers(task, path, posts.firstHeight_m(), ground_msl_m, memory);
+  const int count_of_posts = posts.read(task.at_crossings, memory);
+  WarpColumn receivers(task, memory, count_of_posts, static_cast<float>(range_m), ground_msl_m);
   const auto receiver_m = [&](float height_msl_m) {
     return receivers.receiver_m(task.station.refraction.exponential
                                     ? effectiveHeight_m(task.station, height_msl_m, range_m)
                                     : height_msl_m);
   };
   float rx_m = receiver_m(heightOf(lowest + lane));
-  if (!receivers.read(posts, __shfl_sync(kAllLanes, rx_m, 0))) {
+  if (!receivers.survey(__shfl_sync(kAllLanes, rx_m, 0))) {
     for (int k = lowest + lane; k < end; k += kWarpLanes) filler.set(k, c, NAN);
     if (lane == 0) markUnknown(task.to, c);
     return;
@@ -391,14 +393,14 @@ __global__ void __launch_bounds__(kColumnThreads, 6)
 
 }  // namespace
 
-void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
+void fillDiffraction(const DiffractionTask* tasks, int count, int posts, const ExcessGrid& grid, int row,
                      const ScratchMemory& scratch, cudaStream_t stream) {
   const auto columns = static_cast<unsigned>(grid.column_count);
   othersKernel<<<dim3((columns + kColumnThreads - 1) / kColumnThreads, static_cast<unsigned>(count)),
                  kColumnThreads, 0, stream>>>(tasks, grid);
   emscape::cuda::checkLaunch("losses besides diffraction");
   const WarpTiles tiles(grid, row, count);
-  const PathMemory memory(scratch, ranges);
+  const PathMemory memory(scratch, posts);
   emscape::cuda::check(cudaFuncSetAttribute(diffractionKernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
                                             static_cast<int>(memory.sharedBytes())),
                        "cudaFuncSetAttribute");

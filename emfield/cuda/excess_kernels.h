@@ -31,12 +31,13 @@ struct DiffractionTask {
   GroundPosts ground;
   ExcessOutputs to;
   propagation::TerminalClutter terminal = {};
+  bool at_crossings = false;  ///< see chord_crossings.h; false: regular posts
 };
 /// Several emitters at once: one warp per column.
-/// @param ranges  the largest number of posts of a task
-/// @param grid    in device memory; layers that do not count get no excess
-/// @param row     columns along x
-void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
+/// @param posts  the largest number of posts of a path
+/// @param grid   in device memory; layers that do not count get no excess
+/// @param row    columns along x
+void fillDiffraction(const DiffractionTask* tasks, int count, int posts, const ExcessGrid& grid, int row,
                      const ScratchMemory& scratch, cudaStream_t stream);
 
 /// `parabolic_equation` of one emitter. Pointers are to device memory.

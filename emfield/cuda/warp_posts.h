@@ -9,6 +9,7 @@
 #include <algorithm>
 
 #include "emfield/cuda/column_tiles.h"
+#include "emfield/ground/chord_crossings.h"
 
 namespace emscape::emfield::cuda {
 
@@ -29,11 +30,12 @@ __device__ inline float sumOfWarp(float value) {
 /// The path to a segment of a column.
 struct WarpPath {
   FastInverse to;
-  int posts;   ///< nearer than the column, with the emitter's; 0: there is no path
-  int chords;  ///< of a walk
+  int posts;       ///< regular ones nearer than the column, with the emitter's; 0: there is no path
+  int chords;      ///< of a walk
+  double chord_m;  ///< length of a chord
 };
 
-/// A part of a path: posts first..end - 1.
+/// A part of a path, with the regular posts first..end - 1 beyond its beginning.
 struct WarpChord {
   TerrainChord chord;
   int first, end;
@@ -55,16 +57,10 @@ __device__ inline WarpMemory& warpMemory() {
 /// A separate call, so that its registers are not part of those of the loops over posts.
 __device__ __noinline__ inline void prepareChord(const Station& station, const GroundPosts& ground,
                                                  const WarpPath& path, int number, WarpChord& to) {
-  if (!ground.is_smooth) {
-    TerrainWalk walk(station, ground.terrain, path.to);
-    to.chord = walk.chord(number);
-    const auto postsBefore = [&](double range_m) { return min(ground.lastBefore(range_m) + 1, path.posts); };
-    to.first = number == 0 ? 0 : postsBefore(number * walk.chord_m());
-    to.end = number + 1 == path.chords ? path.posts : postsBefore((number + 1) * walk.chord_m());
-  } else {
-    to.first = 0;
-    to.end = path.posts;
-  }
+  if (!ground.is_smooth) to.chord = TerrainWalk(station, ground.terrain, path.to).chord(number);
+  const double begin_m = number * path.chord_m;
+  to.first = number == 0 ? 1 : min(ground.lastBefore(begin_m) + 1, path.posts);
+  to.end = number + 1 == path.chords ? path.posts : ground.lastBefore(begin_m + path.chord_m) + 1;
 }
 
 /// Some chords of a path, by a warp.
@@ -133,8 +129,7 @@ class PathMemory {
 /// Of a path's length, at most: a post may be at the receivers in float.
 constexpr float kNearerThanEnd = 1 - 2.4e-7f;
 
-/// Reads the posts of a path, the first of which is the emitter's. All lanes of the warp call its functions
-/// together.
+/// Reads the posts of a path. All lanes of the warp call its functions together.
 class WarpPosts {
  public:
   /// @param chords   room for WarpMemory::kPaths
@@ -142,51 +137,149 @@ class WarpPosts {
   /// @param prepared number of the path's chords that are there
   __device__ WarpPosts(const Station& station, const GroundPosts& ground, const WarpPath& path,
                        WarpChord* chords, int first, int prepared)
-      : station_(station), ground_(ground), path_(path), chords_(chords), first_(first), end_(prepared) {}
+      : station_(station),
+        ground_(ground),
+        path_(path),
+        chords_(chords),
+        first_(first),
+        end_(prepared),
+        is_smooth_(ground.is_smooth),
+        is_raised_(ground.is_raised) {}
 
-  /// Height (m above mean sea level) of the ground below the emitter, in all lanes.
-  __device__ float firstHeight_m() const {
-    if (ground_.is_smooth) return 0;
-    const TerrainChord& chord = chords_[first_].chord;
-    const float height_msl_m = chord.in_raster.corner_msl_m != nullptr ? chord.in_raster.heightAt(0) : NAN;
-    return isnan(height_msl_m) ? heightAmongRasters(ground_, chord, 0) : height_msl_m;
-  }
-
-  /// Calls visit(post, PathPost) for the posts between emitter and receivers, 1..posts - 1, each in one lane.
+  /// Calls visit(post, range (m), height above mean sea level (m)) for the regular posts that are nearer than
+  /// the column, from the emitter's on, each in one lane.
   template <class Visit>
-  __device__ void each(const Visit& visit) {
-    const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
-    const double* const ranges_m = ground_.ranges_m;
-    const bool is_smooth = ground_.is_smooth, is_raised = ground_.is_raised;
-    const int chords = path_.chords;
-    const float farthest_m = static_cast<float>(path_.to.distance_m) * kNearerThanEnd;
-    for (int n = 0; n < chords; ++n) {
-      if (n < begin_ || n >= end_) prepareFrom(n);
-      const WarpChord& part = chords_[first_ + n - begin_];
-      const int end = part.end;
-      const RasterChord in_raster = part.chord.in_raster;
-#pragma unroll 1
-      for (int i = max(part.first, 1) + lane; i < end; i += kWarpLanes) {
-        const double range_m = ranges_m[i];
-        float height_msl_m = 0;
-        if (!is_smooth) {
-          height_msl_m = in_raster.corner_msl_m != nullptr ? in_raster.heightAt(range_m) : NAN;
-          if (isnan(height_msl_m)) height_msl_m = heightAmongRasters(ground_, part.chord, range_m);
-          if (is_raised)
-            height_msl_m += clutterAt(ground_, part.chord, range_m, path_.to.distance_m, height_msl_m);
-        }
-        visit(i, PathPost{fminf(static_cast<float>(range_m), farthest_m), height_msl_m});
-      }
+  __device__ void eachRegular(const Visit& visit) {
+    for (int n = 0; n < path_.chords; ++n) {
+      const WarpChord& part = chord(n);
+      eachRegular(part, n == 0 ? 0 : part.first, visit);
     }
   }
 
+  /// Stores the posts between emitter and column in their order, and the emitter's.
+  /// @param at_crossings  false: regular posts; true: those of chord_crossings.h
+  /// @return their number
+  __device__ int read(bool at_crossings, PathPost* to) {
+    const auto store = [&](int at, double range_m, float height_msl_m) {
+      to[at] = {fminf(static_cast<float>(range_m), farthest_m()), height_msl_m};
+    };
+    __syncwarp();  // those of the last path were read
+    if (is_smooth_ || !at_crossings) {
+      eachRegular(store);
+      __syncwarp();
+      return path_.posts;
+    }
+    int count = 0;
+    for (int n = 0; n < path_.chords; ++n) {
+      const WarpChord& part = chord(n);
+      const double begin_m = n * path_.chord_m;
+      if (lane() == 0) store(count, begin_m, heightAt(part.chord, part.chord.in_raster, begin_m));
+      ++count;
+      const int crossings = readCrossings(part.chord, begin_m, n == 0, to + count);
+      if (crossings >= 0) {
+        count += crossings;
+        continue;
+      }
+      const bool is_twice = part.first < part.end && ground_.ranges_m[part.first] <= begin_m;
+      const int first = part.first + (is_twice ? 1 : 0);
+      eachRegular(part, first, [&](int i, double range_m, float height_msl_m) {
+        store(count + i - first, range_m, height_msl_m);
+      });
+      count += max(part.end - first, 0);
+    }
+    __syncwarp();
+    return count;
+  }
+
  private:
-  /// Of paths with many chords.
-  __device__ void prepareFrom(int number) {
-    first_ = 0;
-    begin_ = number;
-    end_ = min(number + WarpMemory::kPaths, path_.chords);
-    prepareChords(station_, ground_, path_, begin_, end_, chords_);
+  static __device__ int lane() { return static_cast<int>(threadIdx.x) % kWarpLanes; }
+  __device__ float farthest_m() const { return static_cast<float>(path_.to.distance_m) * kNearerThanEnd; }
+
+  /// Chord n of the path; those of paths with many are prepared again.
+  __device__ const WarpChord& chord(int n) {
+    if (n < begin_ || n >= end_) {
+      first_ = 0;
+      begin_ = n;
+      end_ = min(n + WarpMemory::kPaths, path_.chords);
+      prepareChords(station_, ground_, path_, begin_, end_, chords_);
+    }
+    return chords_[first_ + n - begin_];
+  }
+  /// Height above mean sea level (m), with the clutter where that counts; NaN over missing terrain.
+  __device__ float heightAt(const TerrainChord& chord, const RasterChord& in_raster, double range_m) const {
+    if (is_smooth_) return 0;
+    const float height_msl_m = in_raster.corner_msl_m != nullptr ? in_raster.heightAt(range_m) : NAN;
+    return raised(chord, range_m,
+                  isnan(height_msl_m) ? heightAmongRasters(ground_, chord, range_m) : height_msl_m);
+  }
+  __device__ float raised(const TerrainChord& chord, double range_m, float height_msl_m) const {
+    if (!is_raised_) return height_msl_m;
+    return height_msl_m + clutterAt(ground_, chord, range_m, path_.to.distance_m, height_msl_m);
+  }
+  template <class Visit>
+  __device__ void eachRegular(const WarpChord& part, int first, const Visit& visit) const {
+    const double* const ranges_m = ground_.ranges_m;
+    const RasterChord in_raster = part.chord.in_raster;
+    const int end = part.end;
+#pragma unroll 1
+    for (int i = first + lane(); i < end; i += kWarpLanes)
+      visit(i, ranges_m[i], heightAt(part.chord, in_raster, ranges_m[i]));
+  }
+
+  /// Stores the posts of a chord beyond its beginning, which is at to[-1].
+  /// @return their number; -1 if the chord has regular posts
+  __device__ int readCrossings(const TerrainChord& chord, double begin_m, bool is_first, PathPost* to) const {
+    if (chord.in_raster.corner_msl_m == nullptr) return -1;
+    const ChordCrossings crossings(chord.in_raster);
+    const int count = crossings.count(), columns = crossings.columns.count;
+    if (count > ground_.maxCrossings(path_.chord_m)) return -1;
+    const int near = is_first ? min(max(ground_.near_count, 1), chords_[first_].end) - 1 : 0;
+    PathPost* const others = to + near;
+#pragma unroll 1
+    for (int i = lane(); i < count; i += kWarpLanes) others[i].range_m = -1;
+    __syncwarp();
+    float unknown = 0;
+#pragma unroll 1
+    for (int n = lane(); n < count; n += kWarpLanes) {
+      const Crossing at = n < columns ? crossings.atColumn(n) : crossings.atRow(n - columns);
+      const double range_m = crossingRange_m(begin_m, path_.chord_m, at.part, path_.to.distance_m);
+      unknown += at.height_msl_m - at.height_msl_m;
+      others[at.place - 1] = {static_cast<float>(range_m), raised(chord, range_m, at.height_msl_m)};
+    }
+    __syncwarp();
+    if (!__all_sync(kAllLanes, unknown == 0)) return -1;
+#pragma unroll 1
+    for (int i = lane(); i < count; i += kWarpLanes) {  // empty at posts of the raster: see Crossing
+      if (others[i].range_m < 0) others[i] = i > 0 ? others[i - 1] : to[-1];
+    }
+    __syncwarp();
+    if (near > 0) addNear(chord, near, count, to);
+    return near + count;
+  }
+
+  /// Puts the regular posts 1..near in order with others, at to[near].
+  __device__ void addNear(const TerrainChord& chord, int near, int others, PathPost* to) const {
+    const double* const ranges_m = ground_.ranges_m;
+    const auto last_m = static_cast<float>(ranges_m[near]);
+    // The others that are nearer than the last one are few: a lane each.
+    const int moved = lane();
+    const bool is_moved = moved < others && to[near + moved].range_m < last_m;
+    const PathPost mine = is_moved ? to[near + moved] : PathPost{HUGE_VALF, 0};
+    int place = moved;
+    for (int i = 1; i <= near; ++i) place += static_cast<float>(ranges_m[i]) <= mine.range_m ? 1 : 0;
+    for (int first = 1; first <= near; first += kWarpLanes) {
+      const int i = first + lane();
+      const double range_m = ranges_m[min(i, near)];
+      int before = 0;
+      for (int other = 0; other < kWarpLanes; ++other) {
+        const float other_m = __shfl_sync(kAllLanes, mine.range_m, other);
+        before += other_m < static_cast<float>(range_m) ? 1 : 0;
+      }
+      if (i <= near)
+        to[i - 1 + before] = {static_cast<float>(range_m), heightAt(chord, chord.in_raster, range_m)};
+    }
+    if (is_moved) to[place] = mine;
+    __syncwarp();
   }
 
   const Station& station_;
@@ -194,6 +287,7 @@ class WarpPosts {
   const WarpPath& path_;
   WarpChord* chords_;
   int first_, begin_ = 0, end_;  ///< chords begin_..end_ - 1 are in chords_ from first_ on
+  bool is_smooth_, is_raised_;
 };
 
 /// Columns of a warp: square, because they share more data than those of a row.
@@ -252,7 +346,9 @@ __device__ void eachPath(const Station& station, const GroundPosts& ground, cons
     if (c >= 0 && has_path(c)) path.to = grid.coordinatesOf(station, static_cast<std::size_t>(c), segment);
     if (path.to.distance_m > 0) {
       path.posts = ground.lastBefore(path.to.distance_m) + 1;
-      path.chords = chords = ground.is_smooth ? 1 : TerrainWalk(station, ground.terrain, path.to).chords();
+      const TerrainWalk walk(station, ground.terrain, path.to);
+      path.chords = chords = ground.is_smooth ? 1 : walk.chords();
+      path.chord_m = ground.is_smooth ? path.to.distance_m : walk.chord_m();
     }
     memory.paths[lane] = path;
   }
