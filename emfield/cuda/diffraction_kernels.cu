@@ -30,36 +30,39 @@ __device__ __noinline__ float groundAtEnd(const DiffractionTask& task, const Fas
   return groundAt(task.station, task.ground, path);
 }
 
-/// Smooth-earth correction of a receiver (dB): the spherical earth's loss minus Bullington's, at least 0. A
-/// separate call.
-/// @param posts  the last of which is nearer than the receiver
-/// @param trend  with the maxima of the receiver
-/// @see P.526-15 eq. (68)
-__device__ __noinline__ float earthCorrectionDb(const DiffractionModel<float>& of, float sea_fraction,
-                                                const PathPost* posts, int last, float distance_m,
-                                                const TerrainTrend<float>& trend, float tx_m, float rx_m) {
-  const EffectiveHeights<float> heights = effectiveHeights(trend, tx_m, rx_m);
-  DiffractionModel<float> model = of;
-  model.earth.sea_fraction = sea_fraction;
-  const float spherical_db = sphericalEarthLossDb(model.earth, distance_m, heights.tx_m, heights.rx_m);
-  if (!(spherical_db > 0)) return 0;
-  if (last < 1) return spherical_db;
-  const auto lastBefore = [&](float range_m) {
-    int begin = 1, end = last;  // begin: the last known to be nearer, or 1
-    while (begin < end) {
-      const int middle = (begin + end + 1) / 2;
-      if (posts[middle].range_m < range_m) {
-        begin = middle;
-      } else {
-        end = middle - 1;
-      }
+/// A receiver whose loss is not yet computed: the maxima are found, and what remains takes many instructions
+/// for each, by lanes with a receiver each.
+struct Receiver {
+  int column, layer;
+  float nu;                   ///< of Bullington's edge
+  float distance_m, ground_msl_m;
+  EffectiveHeights<float> heights;  ///< above the smooth earth; NaN: it has no loss
+  float smooth_nu, sea_fraction;    ///< nu of Bullington's edge over the smooth earth
+
+  /// Loss (dB). @see P.526-15 eq. (68)
+  __device__ float lossDb(const DiffractionModel<float>& model) const {
+    const float loss_db = propagation::bullingtonLossDb(nu, distance_m);
+    if (isnan(heights.tx_m)) return loss_db;
+    propagation::SphericalEarth<float> earth = model.earth;
+    earth.sea_fraction = sea_fraction;
+    const float spherical_db = sphericalEarthLossDb(earth, distance_m, heights.tx_m, heights.rx_m);
+    if (!(spherical_db > 0)) return loss_db;
+    return loss_db + fmaxf(spherical_db - propagation::bullingtonLossDb(smooth_nu, distance_m), 0);
+  }
+};
+
+/// Last of the posts 1..last that is nearer than a range; 1: none is.
+__device__ inline int lastBefore(const PathPost* posts, int last, float range_m) {
+  int begin = 1;
+  while (begin < last) {
+    const int middle = (begin + last + 1) / 2;
+    if (posts[middle].range_m < range_m) {
+      begin = middle;
+    } else {
+      last = middle - 1;
     }
-    return begin;
-  };
-  int clear = lastBefore(distance_m * heights.tx_m / (heights.tx_m + heights.rx_m));
-  const float nu = smoothEarthNu(
-      model, [&](int i) { return posts[i].range_m; }, lastBefore, last, distance_m, heights, clear);
-  return fmaxf(spherical_db - propagation::bullingtonLossDb(nu, distance_m), 0);
+  }
+  return begin;
 }
 
 /// The receivers over the end of a path. Heights are above the first post unless stated otherwise; "plain"
@@ -98,34 +101,26 @@ class WarpColumn {
     return slopeTo(rx_m) < clear_slope_ || (has_earth_ && !isClearOfEarth(rx_m));
   }
 
-  /// Losses (dB) of the receivers of the first `count` lanes, which rise from lane to lane.
-  __device__ __noinline__ float losses(float rx_m, int count) {
+  /// Of the receivers of the first `count` lanes, which rise from lane to lane.
+  __device__ Receiver find(float rx_m, int count) const {
     const float slope = slopeTo(rx_m);
-    Maxima most;
     const bool is_in_earth = has_earth_ && !isClearOfEarth(rx_m);
-    for (int first = 0; first < count;) {
-      const bool with_earth = __shfl_sync(kAllLanes, is_in_earth ? 1 : 0, first) != 0;  // the lowest decides
-      const int left = count - first;
-      if (left == 1) {
-        first = with_earth ? find<1, true>(slope, first, most) : find<1, false>(slope, first, most);
-      } else if (left <= 3 || with_earth) {
-        first = with_earth ? find<3, true>(slope, first, most) : find<3, false>(slope, first, most);
-      } else {
-        first = find<6, false>(slope, first, most);
-      }
-    }
+    const bool is_below = is_in_earth && slope < plain_tx_slope_;  // and so those before
+    const int below = __popc(__ballot_sync(kAllLanes, is_below)), first = min(below, count);
+    Maxima most;
+#pragma unroll 1
+    for (int at = 0; at < first; at += 4) findMaxima<4, true>(slope, at, most);
+#pragma unroll 1
+    for (int at = first; at < count; at += 4) findMaxima<4, false>(slope, at, most);
     const float above = tx_slope_ - slope;
     const float relative = above >= 0 ? std::sqrt(fmaxf(above * most.edge, 0)) : most.edge;
-    float loss_db = propagation::bullingtonLossDb(edge_scale_ * relative, distance_m_);
-    if (is_in_earth) {
-      TerrainTrend<float> over = trend();
-      over.highest_m = most.plain_height_m;
-      over.tx_angle = plain_tx_slope_ - slope;
-      over.rx_angle = most.plain_rx_slope;
-      loss_db += earthCorrectionDb(task_.model.model, sea_fraction_, posts_, last_, distance_m_, over, tx_m_,
-                                   rx_m);
-    }
-    return loss_db;
+    Receiver receiver;
+    receiver.nu = edge_scale_ * relative;
+    receiver.distance_m = distance_m_;
+    receiver.sea_fraction = sea_fraction_;
+    receiver.heights.tx_m = NAN;
+    if (is_in_earth) setEarth(slope, rx_m, most, receiver);
+    return receiver;
   }
 
  private:
@@ -199,9 +194,9 @@ class WarpColumn {
     sea_m = fmaf(length_m, (from.height_msl_m <= 0 ? 0.5f : 0) + (to.height_msl_m <= 0 ? 0.5f : 0), sea_m);
   }
 
-  /// Finds the maxima of the receivers of kReceivers lanes from `first` on. @return the next lane
+  /// Finds the maxima of the receivers of kReceivers lanes from `first` on.
   template <int kReceivers, bool kEarth>
-  __device__ int find(float slope_of_lane, int first, Maxima& of_lane) {
+  __device__ void findMaxima(float slope_of_lane, int first, Maxima& of_lane) const {
     float slope[kReceivers], edge[kReceivers], plain_rx[kReceivers], plain[kReceivers];
     bool is_below[kReceivers];
 #pragma unroll
@@ -236,7 +231,23 @@ class WarpColumn {
       }
       if (lane == first + j) of_lane = most;
     }
-    return first + kReceivers;
+  }
+  /// Sets what the smooth-earth correction needs.
+  __device__ void setEarth(float slope, float rx_m, const Maxima& most, Receiver& receiver) const {
+    TerrainTrend<float> over = trend();
+    over.highest_m = most.plain_height_m;
+    over.tx_angle = plain_tx_slope_ - slope;
+    over.rx_angle = most.plain_rx_slope;
+    const DiffractionModel<float>& model = task_.model.model;
+    const EffectiveHeights<float> heights = effectiveHeights(over, tx_m_, rx_m);
+    if (isClearThroughout(model.earth, distance_m_,
+                          sightLine(model.earth, distance_m_, heights.tx_m, heights.rx_m)))
+      return;
+    receiver.heights = heights;
+    const auto before = [this](float range_m) { return lastBefore(posts_, last_, range_m); };
+    int clear = before(distance_m_ * heights.tx_m / (heights.tx_m + heights.rx_m));
+    receiver.smooth_nu = smoothEarthNu(
+        model, [this](int i) { return posts_[i].range_m; }, before, last_, distance_m_, heights, clear);
   }
   __device__ TerrainTrend<float> trend() const {
     TerrainTrend<float> trend;
@@ -273,9 +284,8 @@ struct OtherLosses {
   propagation::AirColumn air;
   float distance_m, ground_msl_m;
 
-  __device__ OtherLosses(const DiffractionTask& of, double path_m, float ground_m)
-      : task(of), air(of.air, static_cast<float>(path_m)), distance_m(static_cast<float>(path_m)),
-        ground_msl_m(ground_m) {}
+  __device__ OtherLosses(const DiffractionTask& of, float path_m, float ground_m)
+      : task(of), air(of.air, path_m), distance_m(path_m), ground_msl_m(ground_m) {}
   __device__ float lossDb(float height_msl_m) const {
     float loss_db = task.air.isClear() ? 0 : air.lossDb(height_msl_m);
     if (task.terminal.isSet()) loss_db += task.terminal.lossDb(distance_m, height_msl_m - ground_msl_m);
@@ -291,6 +301,10 @@ struct Filler {
   __device__ void set(int k, int c, float excess_db) const {
     task.to.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + static_cast<std::size_t>(c),
                            excess_db);
+  }
+  __device__ float heightOf(int c, int k) const {
+    return static_cast<float>(
+        heightMsl_m(grid.columns[static_cast<std::size_t>(c)], static_cast<double>(grid.t_m[k])));
   }
   __device__ float groundBelow(int c, const FastInverse& path) const {
     return grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAtEnd(task, path);
@@ -312,7 +326,7 @@ __global__ void __launch_bounds__(kColumnThreads)
   const GridColumn column = grid.columns[column_index];
   for (int segment = 0; segment < grid.segments; ++segment) {
     const FastInverse path = grid.coordinatesOf(task.station, column_index, segment);
-    const OtherLosses others(task, path.distance_m,
+    const OtherLosses others(task, static_cast<float>(path.distance_m),
                              task.terminal.isSet() ? filler.groundBelow(c, path) : 0);
     for (int k = max(lowest, grid.firstLayer(segment)); k < grid.firstLayer(segment + 1); ++k) {
       const auto height_msl_m = static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[k])));
@@ -321,44 +335,80 @@ __global__ void __launch_bounds__(kColumnThreads)
   }
 }
 
+/// Receivers of a warp's tile that wait for lanes.
+class ReceiverQueue {
+ public:
+  __device__ ReceiverQueue(const Filler& filler, Receiver* memory) : filler_(filler), memory_(memory) {}
+
+  /// Adds the receivers of the first `count` lanes.
+  __device__ void add(const Receiver& receiver, int count) {
+    if (waiting_ + count > kWarpLanes) fill();
+    __syncwarp();
+    const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
+    if (lane < count) memory_[waiting_ + lane] = receiver;
+    waiting_ += count;
+    __syncwarp();
+  }
+  /// Sets the voxels of those that wait.
+  __device__ void fill() {
+    if (waiting_ > 0) set(filler_, memory_, waiting_);
+    waiting_ = 0;
+  }
+
+ private:
+  static __device__ __noinline__ void set(const Filler& filler, const Receiver* receivers, int count) {
+    const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
+    if (lane >= count) return;
+    const Receiver receiver = receivers[lane];
+    const DiffractionTask& task = filler.task;
+    float excess_db = receiver.lossDb(task.model.model);
+    if (!task.air.isClear() || task.terminal.isSet()) {
+      const float height_msl_m = filler.heightOf(receiver.column, receiver.layer);
+      excess_db += OtherLosses(task, receiver.distance_m, receiver.ground_msl_m).lossDb(height_msl_m);
+    }
+    filler.set(receiver.layer, receiver.column, excess_db);
+  }
+
+  const Filler& filler_;
+  Receiver* memory_;
+  int waiting_ = 0;
+};
+
 /// A segment of a column, by a warp.
 __device__ void fillSegment(const Filler& filler, int c, int segment, const WarpPath& path, WarpPosts& posts,
-                            PathPost* memory) {
+                            PathPost* memory, ReceiverQueue& queue) {
   const DiffractionTask& task = filler.task;
   const ExcessGrid& grid = filler.grid;
   const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
   const int end = grid.firstLayer(segment + 1);
   const int lowest = max(grid.firstValid(static_cast<std::size_t>(c)), grid.firstLayer(segment));
   if (lowest >= end) return;
-  const auto heightOf = [&](int k) {
-    const double t_m = static_cast<double>(grid.t_m[min(k, end - 1)]);
-    return static_cast<float>(heightMsl_m(grid.columns[static_cast<std::size_t>(c)], t_m));
-  };
-  const double range_m = path.to.distance_m;
-  const float ground_msl_m = filler.groundBelow(c, path.to);
   const int count_of_posts = posts.read(task.at_crossings, memory);
-  WarpColumn receivers(task, memory, count_of_posts, static_cast<float>(range_m), ground_msl_m);
-  const auto receiver_m = [&](float height_msl_m) {
+  const auto distance_m = static_cast<float>(path.to.distance_m);
+  const float ground_msl_m = filler.groundBelow(c, path.to);
+  WarpColumn receivers(task, memory, count_of_posts, distance_m, ground_msl_m);
+  const auto receiver_m = [&](int k) {
+    const float height_msl_m = filler.heightOf(c, min(k, end - 1));
     return receivers.receiver_m(task.station.refraction.exponential
-                                    ? effectiveHeight_m(task.station, height_msl_m, range_m)
+                                    ? effectiveHeight_m(task.station, height_msl_m, path.to.distance_m)
                                     : height_msl_m);
   };
-  float rx_m = receiver_m(heightOf(lowest + lane));
+  float rx_m = receiver_m(lowest + lane);
   if (!receivers.survey(__shfl_sync(kAllLanes, rx_m, 0))) {
     for (int k = lowest + lane; k < end; k += kWarpLanes) filler.set(k, c, NAN);
     if (lane == 0) markUnknown(task.to, c);
     return;
   }
+#pragma unroll 1
   for (int first = lowest; first < end; first += kWarpLanes) {
-    const float height_msl_m = heightOf(first + lane);
-    if (first > lowest) rx_m = receiver_m(height_msl_m);
+    if (first > lowest) rx_m = receiver_m(first + lane);
     const int count = __popc(__ballot_sync(kAllLanes, first + lane < end && receivers.isLossy(rx_m)));
     if (count == 0) return;
-    const float loss_db = receivers.losses(rx_m, count);
-    if (lane < count) {
-      const OtherLosses others(task, range_m, ground_msl_m);
-      filler.set(first + lane, c, loss_db + others.lossDb(height_msl_m));
-    }
+    Receiver receiver = receivers.find(rx_m, count);
+    receiver.column = c;
+    receiver.layer = first + lane;
+    receiver.ground_msl_m = ground_msl_m;
+    queue.add(receiver, count);
     if (count < kWarpLanes) return;
   }
 }
@@ -366,11 +416,14 @@ __device__ void fillSegment(const Filler& filler, int c, int segment, const Warp
 __global__ void __launch_bounds__(kColumnThreads, 6)
     diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
                       const __grid_constant__ WarpTiles tiles, const __grid_constant__ PathMemory memory) {
+  __shared__ alignas(Receiver) unsigned char waiting[kColumnThreads * sizeof(Receiver)];
+  Receiver* const of_warp = reinterpret_cast<Receiver*>(waiting) + threadIdx.x / kWarpLanes * kWarpLanes;
   PathPost* const posts_memory = memory.ofWarp();
   const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
   tiles.eachTile([&](int number, int tile) {
     const Filler filler{tasks[number], grid};
     const DiffractionTask& task = filler.task;
+    ReceiverQueue queue(filler, of_warp);
     const int mine = lane < WarpMemory::kPaths ? tiles.columnOf(grid, tile, lane) : -1;
     if (mine >= 0 && grid.isWithoutGround(static_cast<std::size_t>(mine))) {
       for (int k = grid.firstValid(static_cast<std::size_t>(mine)); k < grid.layers; ++k)
@@ -385,9 +438,10 @@ __global__ void __launch_bounds__(kColumnThreads, 6)
             return !grid.isWithoutGround(column) && grid.firstValid(column) < grid.layers;
           },
           [&](int c, const WarpPath& path, WarpPosts posts) {
-            fillSegment(filler, c, segment, path, posts, posts_memory);
+            fillSegment(filler, c, segment, path, posts, posts_memory, queue);
           });
     }
+    queue.fill();
   });
 }
 

@@ -39,11 +39,13 @@ struct WarpPath {
 struct WarpChord {
   TerrainChord chord;
   int first, end;
+  int crossing_count;  ///< -1: there are none, or too many
+  ChordCrossings crossings;
 };
 
 /// Paths and chords of a warp, in shared memory, which is not initialised.
 struct WarpMemory {
-  static constexpr int kPaths = 16;
+  static constexpr int kPaths = 8;
 
   WarpPath paths[kPaths];
   WarpChord chords[kPaths];
@@ -57,7 +59,15 @@ __device__ inline WarpMemory& warpMemory() {
 /// A separate call, so that its registers are not part of those of the loops over posts.
 __device__ __noinline__ inline void prepareChord(const Station& station, const GroundPosts& ground,
                                                  const WarpPath& path, int number, WarpChord& to) {
-  if (!ground.is_smooth) to.chord = TerrainWalk(station, ground.terrain, path.to).chord(number);
+  to.crossing_count = -1;
+  if (!ground.is_smooth) {
+    to.chord = TerrainWalk(station, ground.terrain, path.to).chord(number);
+    if (to.chord.in_raster.corner_msl_m != nullptr) {
+      to.crossings = ChordCrossings(to.chord.in_raster);
+      const int count = to.crossings.count();
+      if (count <= ground.maxCrossings(path.chord_m)) to.crossing_count = count;
+    }
+  }
   const double begin_m = number * path.chord_m;
   to.first = number == 0 ? 1 : min(ground.lastBefore(begin_m) + 1, path.posts);
   to.end = number + 1 == path.chords ? path.posts : ground.lastBefore(begin_m + path.chord_m) + 1;
@@ -175,7 +185,7 @@ class WarpPosts {
       const double begin_m = n * path_.chord_m;
       if (lane() == 0) store(count, begin_m, heightAt(part.chord, part.chord.in_raster, begin_m));
       ++count;
-      const int crossings = readCrossings(part.chord, begin_m, n == 0, to + count);
+      const int crossings = part.crossing_count < 0 ? -1 : readCrossings(part, begin_m, n == 0, to + count);
       if (crossings >= 0) {
         count += crossings;
         continue;
@@ -228,12 +238,11 @@ class WarpPosts {
 
   /// Stores the posts of a chord beyond its beginning, which is at to[-1].
   /// @return their number; -1 if the chord has regular posts
-  __device__ int readCrossings(const TerrainChord& chord, double begin_m, bool is_first, PathPost* to) const {
-    if (chord.in_raster.corner_msl_m == nullptr) return -1;
-    const ChordCrossings crossings(chord.in_raster);
-    const int count = crossings.count(), columns = crossings.columns.count;
-    if (count > ground_.maxCrossings(path_.chord_m)) return -1;
-    const int near = is_first ? min(max(ground_.near_count, 1), chords_[first_].end) - 1 : 0;
+  __device__ int readCrossings(const WarpChord& part, double begin_m, bool is_first, PathPost* to) const {
+    const TerrainChord& chord = part.chord;
+    const ChordCrossings crossings = part.crossings;
+    const int count = part.crossing_count, columns = crossings.columns.count;
+    const int near = is_first ? min(max(ground_.near_count, 1), part.end) - 1 : 0;
     PathPost* const others = to + near;
 #pragma unroll 1
     for (int i = lane(); i < count; i += kWarpLanes) others[i].range_m = -1;
@@ -261,24 +270,26 @@ class WarpPosts {
   __device__ void addNear(const TerrainChord& chord, int near, int others, PathPost* to) const {
     const double* const ranges_m = ground_.ranges_m;
     const auto last_m = static_cast<float>(ranges_m[near]);
-    // The others that are nearer than the last one are few: a lane each.
-    const int moved = lane();
-    const bool is_moved = moved < others && to[near + moved].range_m < last_m;
-    const PathPost mine = is_moved ? to[near + moved] : PathPost{HUGE_VALF, 0};
-    int place = moved;
-    for (int i = 1; i <= near; ++i) place += static_cast<float>(ranges_m[i]) <= mine.range_m ? 1 : 0;
+    // The others that are nearer than the last one are few.
+    const int mine = lane();
+    const float other_m = mine < others ? to[near + mine].range_m : HUGE_VALF;
+    const float other_msl_m = mine < others ? to[near + mine].height_msl_m : 0;
+    const int moved = __popc(__ballot_sync(kAllLanes, other_m < last_m));
+    int after = 0;  // of the lane's other: posts before it
     for (int first = 1; first <= near; first += kWarpLanes) {
-      const int i = first + lane();
+      const int i = first + mine;
       const double range_m = ranges_m[min(i, near)];
+      const float near_m = i <= near ? static_cast<float>(range_m) : HUGE_VALF;
       int before = 0;
-      for (int other = 0; other < kWarpLanes; ++other) {
-        const float other_m = __shfl_sync(kAllLanes, mine.range_m, other);
-        before += other_m < static_cast<float>(range_m) ? 1 : 0;
+      for (int other = 0; other < moved; ++other) {
+        const float here_m = __shfl_sync(kAllLanes, other_m, other);
+        const int nearer = __popc(__ballot_sync(kAllLanes, near_m <= here_m));
+        if (mine == other) after += nearer;
+        before += here_m < near_m ? 1 : 0;
       }
-      if (i <= near)
-        to[i - 1 + before] = {static_cast<float>(range_m), heightAt(chord, chord.in_raster, range_m)};
+      if (i <= near) to[i - 1 + before] = {near_m, heightAt(chord, chord.in_raster, range_m)};
     }
-    if (is_moved) to[place] = mine;
+    if (mine < moved) to[mine + after] = {other_m, other_msl_m};
     __syncwarp();
   }
 
@@ -290,18 +301,18 @@ class WarpPosts {
   bool is_smooth_, is_raised_;
 };
 
-/// Columns of a warp: square, because they share more data than those of a row.
-constexpr int kWarpColumns = 4;
-static_assert(kWarpColumns * kWarpColumns == WarpMemory::kPaths);
+/// Columns of a warp: nearly square, because they share more data than those of a row.
+constexpr int kWarpColumns = 4, kWarpRows = 2;
+static_assert(kWarpColumns * kWarpRows == WarpMemory::kPaths);
 
-/// Tiles of kWarpColumns x kWarpColumns columns over a grid's rows, of all tasks; a warp each.
+/// Tiles of kWarpColumns x kWarpRows columns over a grid's rows, of all tasks; a warp each.
 class WarpTiles {
  public:
   /// @param row  columns along x
   WarpTiles(const ExcessGrid& grid, int row, int tasks) : row_(row) {
     const int rows = static_cast<int>(grid.column_count) / row;
     along_x_ = (row + kWarpColumns - 1) / kWarpColumns;
-    of_task_ = along_x_ * ((rows + kWarpColumns - 1) / kWarpColumns);
+    of_task_ = along_x_ * ((rows + kWarpRows - 1) / kWarpRows);
     count_ = static_cast<long long>(of_task_) * tasks;
   }
   /// For one tile per warp. @param most  blocks, each of which then has several
@@ -321,7 +332,7 @@ class WarpTiles {
   /// A column of a tile, 0..WarpMemory::kPaths - 1; -1: outside the grid.
   __device__ int columnOf(const ExcessGrid& grid, int tile, int n) const {
     const int x = tile % along_x_ * kWarpColumns + n % kWarpColumns;
-    const int y = tile / along_x_ * kWarpColumns + n / kWarpColumns;
+    const int y = tile / along_x_ * kWarpRows + n / kWarpColumns;
     return x < row_ && static_cast<std::size_t>(y) * row_ < grid.column_count ? y * row_ + x : -1;
   }
 
