@@ -293,7 +293,6 @@ void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t st
 void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& requests,
                                       const std::vector<Work>& works, cudaStream_t stream) {
   std::vector<DiffractionTask> tasks;
-  int most_ranges = 0;
   for (std::size_t r = 0; r < works.size(); ++r) {
     const Work& work = works[r];
     if (work.is_equation ? setup_.terrain == nullptr : !work.model) continue;
@@ -313,11 +312,10 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
       continue;
     }
     tasks.push_back(task);
-    most_ranges = std::max(most_ranges, work.ground.range_count);
   }
   if (tasks.empty()) return;
-  fillDiffraction(diffraction_.send(tasks, stream), static_cast<int>(tasks.size()), most_ranges, excess_grid_,
-                  columns_.row, scratch(), stream);
+  fillDiffraction(diffraction_.send(tasks, stream), static_cast<int>(tasks.size()), excess_grid_,
+                  columns_.row, stream);
 }
 
 /// PeOthers::diffraction of an equation before its plan.

@@ -1,16 +1,17 @@
-// `diffraction` on the device: a warp a column.
+// `diffraction` on the device: a thread a column, which reads its posts again for some receivers at a time and
+// stores none.
 //
 // The first pass over a path's posts gives the steepest slope from the transmitter, and the slope of the line
 // of sight above which every post is clear: nu of a post falls linearly with the receiver's height. Only
-// receivers below that, or not clear of the smooth earth, are computed, some at each further pass; the others
-// have no loss and were filled beforehand. The same formulas as propagation/diffraction/excess.cpp.
+// receivers below that, or not clear of the smooth earth, are computed; the others have no loss. Few
+// receivers, as those of a map, take one pass. The same formulas as propagation/diffraction/excess.cpp.
 
 #include <algorithm>
 #include <cstdint>
 
 #include "base/cuda/cuda_memory.h"
-#include "emfield/cuda/warp_posts.h"
-#include "propagation/diffraction/smooth_earth.h"
+#include "emfield/cuda/column_posts.h"
+#include "emfield/cuda/column_tiles.h"
 
 namespace emscape::emfield::cuda {
 namespace {
@@ -25,230 +26,198 @@ __device__ __noinline__ float effectiveHeight_m(const Station& station, float he
       station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m), station.height_msl_m, range_m));
 }
 
-/// Of tilted columns. A separate call, too.
-__device__ __noinline__ float groundAtEnd(const DiffractionTask& task, const FastInverse& path) {
-  return groundAt(task.station, task.ground, path);
-}
-
-/// A receiver whose loss is not yet computed: the maxima are found, and what remains takes many instructions
-/// for each, by lanes with a receiver each.
-struct Receiver {
-  int column, layer;
-  float nu;                   ///< of Bullington's edge
-  float distance_m, ground_msl_m;
-  EffectiveHeights<float> heights;  ///< above the smooth earth; NaN: it has no loss
-  float smooth_nu, sea_fraction;    ///< nu of Bullington's edge over the smooth earth
-
-  /// Loss (dB). @see P.526-15 eq. (68)
-  __device__ float lossDb(const DiffractionModel<float>& model) const {
-    const float loss_db = propagation::bullingtonLossDb(nu, distance_m);
-    if (isnan(heights.tx_m)) return loss_db;
-    propagation::SphericalEarth<float> earth = model.earth;
-    earth.sea_fraction = sea_fraction;
-    const float spherical_db = sphericalEarthLossDb(earth, distance_m, heights.tx_m, heights.rx_m);
-    if (!(spherical_db > 0)) return loss_db;
-    return loss_db + fmaxf(spherical_db - propagation::bullingtonLossDb(smooth_nu, distance_m), 0);
+/// Bullington's nu over a smooth earth with posts at the same ranges, as propagation::bullingtonNu. A
+/// separate call.
+/// @param heights  of the antennas above it
+__device__ __noinline__ float smoothEarthNu(const DiffractionModel<float>& model, const ColumnPosts& posts,
+                                            float distance_m, const EffectiveHeights<float>& heights) {
+  const float k = model.half_curvature, d = distance_m, tx_m = heights.tx_m, rx_m = heights.rx_m;
+  // Largest slope from an antenna: at its horizon, that is at one of the posts on either side of it.
+  const auto largest = [](const PostsAround& around, const auto& slopeAt) {
+    return fmaxf(around.before_m > 0 ? slopeAt(around.before_m) : -HUGE_VALF,
+                 around.after_m < HUGE_VALF ? slopeAt(around.after_m) : -HUGE_VALF);
+  };
+  const float tx_slope = largest(posts.around(std::sqrt(tx_m / k)),
+                                 [=](float range_m) { return k * (d - range_m) - tx_m / range_m; });
+  const float slope_to_rx = (rx_m - tx_m) / d;
+  if (tx_slope >= slope_to_rx) {
+    const float rx_slope = largest(posts.around(fmaxf(d - std::sqrt(rx_m / k), 0)),
+                                   [=](float range_m) { return k * range_m - rx_m / (d - range_m); });
+    return bullingtonEdgeNu(model, d, slope_to_rx, tx_slope, rx_slope);
   }
-};
-
-/// Last of the posts 1..last that is nearer than a range; 1: none is.
-__device__ inline int lastBefore(const PathPost* posts, int last, float range_m) {
-  int begin = 1;
-  while (begin < last) {
-    const int middle = (begin + last + 1) / 2;
-    if (posts[middle].range_m < range_m) {
-      begin = middle;
-    } else {
-      last = middle - 1;
-    }
+  // The square of the clearance over d1 d2 has a single minimum between antennas that are not below ground:
+  // where its logarithm's derivative changes its sign.
+  float nearer_m = 0, farther_m = d;
+  for (int i = 0; i < 24; ++i) {
+    const float at_m = (nearer_m + farther_m) / 2, beyond_m = d - at_m;
+    const float clearance_m = tx_m + slope_to_rx * at_m - k * at_m * beyond_m;
+    const float rise = slope_to_rx - k * (beyond_m - at_m);
+    const bool falls = 2 * rise * at_m * beyond_m < clearance_m * (beyond_m - at_m);
+    nearer_m = falls ? at_m : nearer_m;
+    farther_m = falls ? farther_m : at_m;
   }
-  return begin;
+  return largest(posts.around(nearer_m), [=](float range_m) {
+    const float beyond_m = d - range_m;
+    return -(tx_m + slope_to_rx * range_m - k * range_m * beyond_m) *
+           std::sqrt(2 * d / (model.earth.wavelength_m * range_m * beyond_m));
+  });
 }
 
 /// The receivers over the end of a path. Heights are above the first post unless stated otherwise; "plain"
-/// values leave out the earth's bulge. Members are the same in all lanes, parameters named rx_m are a
-/// receiver's of each lane.
-class WarpColumn {
+/// values leave out the earth's bulge.
+class Receivers {
  public:
-  /// @param posts  from the emitter's on
-  __device__ WarpColumn(const DiffractionTask& task, const PathPost* posts, int count, float distance_m,
-                        float ground_msl_m)
+  __device__ Receivers(const DiffractionTask& task, ColumnPosts& posts, const FastInverse& path,
+                       float ground_msl_m)
       : task_(task),
         posts_(posts),
-        last_(count - 1),
-        base_msl_m_(posts[0].height_msl_m),
-        distance_m_(distance_m),
+        base_msl_m_(groundAt(task.station, task.ground, {0, path.sin_azimuth, path.cos_azimuth})),
+        distance_m_(static_cast<float>(path.distance_m)),
         ground_m_(ground_msl_m - base_msl_m_),
         tx_m_(DiffractionModel<float>::raised_m(task.model.tx_msl_m - base_msl_m_, 0)),
         edge_scale_(std::sqrt(2 * distance_m_ / task.model.model.earth.wavelength_m)),
         half_curvature_(task.model.model.half_curvature),
         sea_fraction_(task.model.model.earth.sea_fraction) {}
 
-  /// The first pass. @param lowest_m  of the lowest receiver
-  /// @return false if terrain is missing along the profile
-  __device__ bool survey(float lowest_m) {
-    const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
-    has_earth_ = !isClearThroughout(earth, distance_m_,
-                                    sightLine(earth, distance_m_, tx_m_, lowest_m - ground_m_));
-    return has_earth_ ? surveyPosts<true>() : surveyPosts<false>();
-  }
-
-  __device__ float receiver_m(float rx_msl_m) const {
-    return DiffractionModel<float>::raised_m(rx_msl_m - base_msl_m_, ground_m_);
-  }
-
-  __device__ bool isLossy(float rx_m) const {
-    return slopeTo(rx_m) < clear_slope_ || (has_earth_ && !isClearOfEarth(rx_m));
-  }
-
-  /// Of the receivers of the first `count` lanes, which rise from lane to lane.
-  __device__ Receiver find(float rx_m, int count) const {
-    const float slope = slopeTo(rx_m);
-    const bool is_in_earth = has_earth_ && !isClearOfEarth(rx_m);
-    const bool is_below = is_in_earth && slope < plain_tx_slope_;  // and so those before
-    const int below = __popc(__ballot_sync(kAllLanes, is_below)), first = min(below, count);
-    Maxima most;
-#pragma unroll 1
-    for (int at = 0; at < first; at += 4) findMaxima<4, true>(slope, at, most);
-#pragma unroll 1
-    for (int at = first; at < count; at += 4) findMaxima<4, false>(slope, at, most);
-    const float above = tx_slope_ - slope;
-    const float relative = above >= 0 ? std::sqrt(fmaxf(above * most.edge, 0)) : most.edge;
-    Receiver receiver;
-    receiver.nu = edge_scale_ * relative;
-    receiver.distance_m = distance_m_;
-    receiver.sea_fraction = sea_fraction_;
-    receiver.heights.tx_m = NAN;
-    if (is_in_earth) setEarth(slope, rx_m, most, receiver);
-    return receiver;
-  }
-
- private:
   /// Of a receiver.
   struct Maxima {
     float edge = -HUGE_VALF;  ///< slope from it, of one below the steepest ray; else height over sqrt(d1 d2)
     float plain_rx_slope = -HUGE_VALF, plain_height_m = -HUGE_VALF;
   };
-  /// Terms of an obstacle.
-  struct Obstacle {
-    float range_m, beyond_m, product_m2, root;  ///< root: 1 / sqrt(product)
-    float above_tx_m, bulged_m;                 ///< the latter with the earth's bulge
 
-    __device__ float perBeyond() const { return root * root * range_m; }
-  };
+  __device__ float receiver_m(float rx_msl_m) const {
+    return DiffractionModel<float>::raised_m(rx_msl_m - base_msl_m_, ground_m_);
+  }
 
+  /// The first pass.
+  /// @param lowest_m  of the lowest receiver
+  /// @param rx_m      of receivers whose maxima are found, too
+  /// @return false if terrain is missing along the profile
+  template <int kReceivers>
+  __device__ bool survey(float lowest_m, const float* rx_m, Maxima* most) {
+    const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
+    has_earth_ = !isClearThroughout(earth, distance_m_,
+                                    sightLine(earth, distance_m_, tx_m_, lowest_m - ground_m_));
+    const bool for_any = __any_sync(__activemask(), has_earth_);  // one loop for all threads
+    return for_any ? pass<kReceivers, true, true>(rx_m, most) : pass<kReceivers, true, false>(rx_m, most);
+  }
+  /// Finds the maxima of receivers, lowest first.
+  template <int kReceivers>
+  __device__ void find(const float* rx_m, Maxima* most) {
+    const bool in_earth = isInEarth(rx_m[0]) && slopeTo(rx_m[0]) < plain_tx_slope_;
+    if (__any_sync(__activemask(), in_earth)) {
+      pass<kReceivers, false, true>(rx_m, most);
+    } else {
+      pass<kReceivers, false, false>(rx_m, most);
+    }
+  }
+
+  __device__ bool isLossy(float rx_m) const { return slopeTo(rx_m) < clear_slope_ || isInEarth(rx_m); }
+
+  /// @see P.526-15 eq. (68)
+  __device__ float lossDb(float rx_m, const Maxima& most) const {
+    const float above = tx_slope_ - slopeTo(rx_m);
+    const float relative = above >= 0 ? std::sqrt(fmaxf(above * most.edge, 0)) : most.edge;
+    const float loss_db = propagation::bullingtonLossDb(edge_scale_ * relative, distance_m_);
+    return isInEarth(rx_m) ? loss_db + earthCorrectionDb(rx_m, most) : loss_db;
+  }
+
+ private:
   __device__ float slopeTo(float rx_m) const { return (rx_m - tx_m_) / distance_m_; }
-  __device__ Obstacle obstacleAt(const PathPost& at) const {
-    Obstacle post;
-    post.range_m = at.range_m;
-    post.beyond_m = distance_m_ - post.range_m;
-    post.product_m2 = post.range_m * post.beyond_m;
-    post.root = rsqrtf(post.product_m2);
-    post.above_tx_m = at.height_msl_m - base_msl_m_ - tx_m_;
-    post.bulged_m = fmaf(half_curvature_, post.product_m2, post.above_tx_m);
-    return post;
-  }
 
-  /// @tparam kEarth  also for the smooth earth
-  template <bool kEarth>
-  __device__ bool surveyPosts() {
-    const PathPost* const posts = posts_;
+  /// @tparam kSurvey  finds what is the same for all receivers
+  /// @tparam kEarth   also for the smooth earth
+  template <int kReceivers, bool kSurvey, bool kEarth>
+  __device__ __noinline__ bool pass(const float* rx_m, Maxima* most) {
+    constexpr int kRoom = kReceivers > 0 ? kReceivers : 1;
+    constexpr bool kBoth = kSurvey && kReceivers > 0;  // it is not known which are below the steepest ray
     const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
-    float tx = -HUGE_VALF, clear = -HUGE_VALF, plain_tx = -HUGE_VALF;
-    float unknown = base_msl_m_ - base_msl_m_ + (ground_m_ - ground_m_);
-    float v1 = 0, v2 = 0, sea_m = 0;
-#pragma unroll 2
-    for (int i = 1 + static_cast<int>(threadIdx.x) % kWarpLanes; i <= last_; i += kWarpLanes) {
-      const PathPost at = posts[i];
-      unknown += at.height_msl_m - at.height_msl_m;
-      const Obstacle post = obstacleAt(at);
-      const float per_range = post.beyond_m * post.root;
-      tx = fmaxf(tx, per_range * (post.bulged_m * post.root));
-      clear = fmaxf(clear, per_range * fmaf(post.bulged_m, post.root, clearance));
+    const float d = distance_m_, base_msl_m = base_msl_m_, tx_m = tx_m_, half_curvature = half_curvature_;
+    float slope[kRoom], edge[kRoom], nearest[kRoom], plain_rx[kRoom], plain[kRoom];
+    bool is_below[kRoom];
+#pragma unroll
+    for (int j = 0; j < kReceivers; ++j) {
+      slope[j] = slopeTo(rx_m[j]);
+      is_below[j] = slope[j] <= tx_slope_;
+    }
+    float tx, clear, plain_tx, unknown, v1, v2, sea_m;
+    PathPost before{};
+    float v1_rest, v2_rest;  // of the sums' rounding
+    const auto add = [](float term, float& sum, float& rest) {
+      const float more = term - rest, next = sum + more;
+      rest = (next - sum) - more;
+      sum = next;
+    };
+    const auto addToTrend = [&](const PathPost& to) {  // as propagation::TerrainSums
+      const float length_m = to.range_m - before.range_m;
+      const float from_m = before.height_msl_m - base_msl_m, to_m = to.height_msl_m - base_msl_m;
+      add(length_m * (from_m + to_m), v1, v1_rest);
+      add(length_m * (to_m * (2 * to.range_m + before.range_m) + from_m * (to.range_m + 2 * before.range_m)),
+          v2, v2_rest);
+      sea_m = fmaf(length_m, (before.height_msl_m <= 0 ? 0.5f : 0) + (to.height_msl_m <= 0 ? 0.5f : 0), sea_m);
+      before = to;
+    };
+    bool is_whole;
+    do {
+      tx = clear = plain_tx = -HUGE_VALF;
+      unknown = base_msl_m - base_msl_m + (ground_m_ - ground_m_);
+      v1 = v2 = v1_rest = v2_rest = sea_m = 0;
+      before = {0, base_msl_m};
+#pragma unroll
+      for (int j = 0; j < kReceivers; ++j) edge[j] = nearest[j] = plain_rx[j] = plain[j] = -HUGE_VALF;
+      is_whole = posts_.each<kSurvey && kEarth>([&](const PathPost& post) {
+        const float range = post.range_m, beyond = d - range, product = range * beyond;
+        float root;
+        asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(product));
+        const float above = post.height_msl_m - base_msl_m - tx_m;
+        const float bulged = fmaf(half_curvature, product, above);
+        if constexpr (kSurvey) {
+          unknown += post.height_msl_m - post.height_msl_m;
+          const float per_range = beyond * root;
+          tx = fmaxf(tx, per_range * (bulged * root));
+          clear = fmaxf(clear, per_range * fmaf(bulged, root, clearance));
+          if constexpr (kEarth) {
+            plain_tx = fmaxf(plain_tx, per_range * (above * root));
+            addToTrend(post);
+          }
+        }
+        const float per_beyond = root * root * range, bend = half_curvature * range;
+#pragma unroll
+        for (int j = 0; j < kReceivers; ++j) {
+          const float above_line = fmaf(-slope[j], range, bulged);
+          const float from_rx = above_line * (kBoth || is_below[j] ? per_beyond : root);
+          edge[j] = fmaxf(edge[j], from_rx);
+          if constexpr (kBoth) nearest[j] = fmaxf(nearest[j], above_line * root);
+          if constexpr (kEarth) {  // read of those below the steepest plain ray, and so below the steepest one
+            plain_rx[j] = fmaxf(plain_rx[j], from_rx - bend);
+            plain[j] = fmaxf(plain[j], fmaf(-slope[j], range, above));
+          }
+        }
+      });
+    } while (!is_whole);
+    if constexpr (kSurvey) {
+      tx_slope_ = tx;
+      clear_slope_ = clear;
+      plain_tx_slope_ = plain_tx;
       if constexpr (kEarth) {
-        plain_tx = fmaxf(plain_tx, per_range * (post.above_tx_m * post.root));
-        addToTrend(posts[i - 1], at, v1, v2, sea_m);
+        addToTrend({d, ground_m_ + base_msl_m});
+        const propagation::TerrainSums sums{static_cast<double>(v1), static_cast<double>(v2)};
+        trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(d)));
+        trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(d)));
+        if (task_.model.model.sea_by_height) sea_fraction_ = sea_m / d;
       }
     }
-    tx_slope_ = largestOfWarp(tx);
-    clear_slope_ = largestOfWarp(clear);
-    if constexpr (kEarth) {
-      plain_tx_slope_ = largestOfWarp(plain_tx);
-      if (threadIdx.x % kWarpLanes == 0)
-        addToTrend(posts[last_], {distance_m_, ground_m_ + base_msl_m_}, v1, v2, sea_m);
-      const propagation::TerrainSums sums{static_cast<double>(sumOfWarp(v1)),
-                                          static_cast<double>(sumOfWarp(v2))};
-      trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(distance_m_)));
-      trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(distance_m_)));
-      if (task_.model.model.sea_by_height) sea_fraction_ = sumOfWarp(sea_m) / distance_m_;
+#pragma unroll
+    for (int j = 0; j < kReceivers; ++j) {
+      most[j].edge = kBoth && !(slope[j] <= tx) ? nearest[j] : edge[j];
+      if constexpr (kEarth) {
+        most[j].plain_rx_slope = plain_rx[j];
+        most[j].plain_height_m = plain[j];
+      }
     }
-    return __all_sync(kAllLanes, unknown == 0);
-  }
-  /// Adds the interval between two posts to propagation::TerrainSums, and to the length over sea.
-  __device__ void addToTrend(const PathPost& from, const PathPost& to, float& v1, float& v2,
-                             float& sea_m) const {
-    const float length_m = to.range_m - from.range_m;
-    const float from_m = from.height_msl_m - base_msl_m_, to_m = to.height_msl_m - base_msl_m_;
-    v1 = fmaf(length_m, from_m + to_m, v1);
-    v2 = fmaf(length_m, to_m * (2 * to.range_m + from.range_m) + from_m * (to.range_m + 2 * from.range_m), v2);
-    sea_m = fmaf(length_m, (from.height_msl_m <= 0 ? 0.5f : 0) + (to.height_msl_m <= 0 ? 0.5f : 0), sea_m);
+    return unknown == 0;
   }
 
-  /// Finds the maxima of the receivers of kReceivers lanes from `first` on.
-  template <int kReceivers, bool kEarth>
-  __device__ void findMaxima(float slope_of_lane, int first, Maxima& of_lane) const {
-    float slope[kReceivers], edge[kReceivers], plain_rx[kReceivers], plain[kReceivers];
-    bool is_below[kReceivers];
-#pragma unroll
-    for (int j = 0; j < kReceivers; ++j) {
-      slope[j] = __shfl_sync(kAllLanes, slope_of_lane, min(first + j, kWarpLanes - 1));
-      is_below[j] = slope[j] <= tx_slope_;
-      edge[j] = plain_rx[j] = plain[j] = -HUGE_VALF;
-    }
-    const PathPost* const posts = posts_;
-    const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
-#pragma unroll 2
-    for (int i = 1 + lane; i <= last_; i += kWarpLanes) {
-      const Obstacle post = obstacleAt(posts[i]);
-      const float per_beyond = post.perBeyond();
-#pragma unroll
-      for (int j = 0; j < kReceivers; ++j) {
-        const float above_m = fmaf(-slope[j], post.range_m, post.bulged_m);
-        edge[j] = fmaxf(edge[j], above_m * (is_below[j] ? per_beyond : post.root));
-        if constexpr (kEarth) {
-          const float plain_m = fmaf(-slope[j], post.range_m, post.above_tx_m);
-          plain_rx[j] = fmaxf(plain_rx[j], plain_m * per_beyond);
-          plain[j] = fmaxf(plain[j], plain_m);
-        }
-      }
-    }
-#pragma unroll
-    for (int j = 0; j < kReceivers; ++j) {
-      Maxima most{largestOfWarp(edge[j])};
-      if constexpr (kEarth) {
-        most.plain_rx_slope = largestOfWarp(plain_rx[j]);
-        most.plain_height_m = largestOfWarp(plain[j]);
-      }
-      if (lane == first + j) of_lane = most;
-    }
-  }
-  /// Sets what the smooth-earth correction needs.
-  __device__ void setEarth(float slope, float rx_m, const Maxima& most, Receiver& receiver) const {
-    TerrainTrend<float> over = trend();
-    over.highest_m = most.plain_height_m;
-    over.tx_angle = plain_tx_slope_ - slope;
-    over.rx_angle = most.plain_rx_slope;
-    const DiffractionModel<float>& model = task_.model.model;
-    const EffectiveHeights<float> heights = effectiveHeights(over, tx_m_, rx_m);
-    if (isClearThroughout(model.earth, distance_m_,
-                          sightLine(model.earth, distance_m_, heights.tx_m, heights.rx_m)))
-      return;
-    receiver.heights = heights;
-    const auto before = [this](float range_m) { return lastBefore(posts_, last_, range_m); };
-    int clear = before(distance_m_ * heights.tx_m / (heights.tx_m + heights.rx_m));
-    receiver.smooth_nu = smoothEarthNu(
-        model, [this](int i) { return posts_[i].range_m; }, before, last_, distance_m_, heights, clear);
-  }
   __device__ TerrainTrend<float> trend() const {
     TerrainTrend<float> trend;
     trend.start_msl_m = trend_start_m_;
@@ -258,16 +227,30 @@ class WarpColumn {
     trend.rx_ground_msl_m = ground_m_;
     return trend;
   }
-  /// True if the smooth earth has no loss for a receiver and those above; see LaneColumn.
-  __device__ bool isClearOfEarth(float rx_m) const {
+  /// False if the smooth earth has no loss for a receiver and those above; see LaneColumn.
+  __device__ bool isInEarth(float rx_m) const {
+    if (!has_earth_) return false;
     const EffectiveHeights<float> least = effectiveHeights(trend(), tx_m_, rx_m);
     const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
-    return isClearThroughout(earth, distance_m_, sightLine(earth, distance_m_, least.tx_m, least.rx_m));
+    return !isClearThroughout(earth, distance_m_, sightLine(earth, distance_m_, least.tx_m, least.rx_m));
+  }
+  /// Smooth-earth correction (dB): the spherical earth's loss minus Bullington's, at least 0.
+  __device__ float earthCorrectionDb(float rx_m, const Maxima& most) const {
+    TerrainTrend<float> over = trend();
+    over.highest_m = most.plain_height_m;
+    over.tx_angle = plain_tx_slope_ - slopeTo(rx_m);
+    over.rx_angle = most.plain_rx_slope;
+    const EffectiveHeights<float> heights = effectiveHeights(over, tx_m_, rx_m);
+    propagation::SphericalEarth<float> earth = task_.model.model.earth;
+    earth.sea_fraction = sea_fraction_;
+    const float spherical_db = sphericalEarthLossDb(earth, distance_m_, heights.tx_m, heights.rx_m);
+    if (!(spherical_db > 0)) return 0;
+    const float nu = smoothEarthNu(task_.model.model, posts_, distance_m_, heights);
+    return fmaxf(spherical_db - propagation::bullingtonLossDb(nu, distance_m_), 0);
   }
 
   const DiffractionTask& task_;
-  const PathPost* posts_;
-  int last_;  ///< the last one before the receivers
+  ColumnPosts& posts_;
   float base_msl_m_, distance_m_, ground_m_, tx_m_;
   float edge_scale_;  ///< from heights over sqrt(d1 d2) to nu
   float half_curvature_, sea_fraction_;
@@ -278,188 +261,104 @@ class WarpColumn {
   float trend_start_m_ = 0, trend_end_m_ = 0;  ///< the line fitted to the terrain, with has_earth_
 };
 
-/// Losses of a voxel besides diffraction.
-struct OtherLosses {
-  const DiffractionTask& task;
-  propagation::AirColumn air;
-  float distance_m, ground_msl_m;
-
-  __device__ OtherLosses(const DiffractionTask& of, float path_m, float ground_m)
-      : task(of), air(of.air, path_m), distance_m(path_m), ground_msl_m(ground_m) {}
-  __device__ float lossDb(float height_msl_m) const {
-    float loss_db = task.air.isClear() ? 0 : air.lossDb(height_msl_m);
-    if (task.terminal.isSet()) loss_db += task.terminal.lossDb(distance_m, height_msl_m - ground_msl_m);
-    return loss_db;
-  }
-};
-
-/// A task over a grid.
-struct Filler {
-  const DiffractionTask& task;
-  const ExcessGrid& grid;
-
-  __device__ void set(int k, int c, float excess_db) const {
-    task.to.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + static_cast<std::size_t>(c),
-                           excess_db);
-  }
-  __device__ float heightOf(int c, int k) const {
-    return static_cast<float>(
-        heightMsl_m(grid.columns[static_cast<std::size_t>(c)], static_cast<double>(grid.t_m[k])));
-  }
-  __device__ float groundBelow(int c, const FastInverse& path) const {
-    return grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAtEnd(task, path);
-  }
-};
-
-/// Fills all voxels by the losses besides diffraction, a thread a column.
-__global__ void __launch_bounds__(kColumnThreads)
-    othersKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid) {
-  const int c = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+/// A segment of a column.
+/// @tparam kReceivers  at a time
+/// @tparam kOnePass    without a pass for all receivers
+template <int kReceivers, bool kOnePass>
+__device__ void fillSegment(const DiffractionTask& task, const ExcessGrid& grid, int c, int segment) {
   const auto column_index = static_cast<std::size_t>(c);
-  if (column_index >= grid.column_count) return;
-  const Filler filler{tasks[blockIdx.y], grid};
-  const DiffractionTask& task = filler.task;
-  const int lowest = grid.firstValid(column_index);
-  const bool has_others = !task.air.isClear() || task.terminal.isSet();
-  for (int k = 0; k < (has_others ? lowest : grid.layers); ++k) filler.set(k, c, 0);
-  if (!has_others || lowest == grid.layers) return;
-  const GridColumn column = grid.columns[column_index];
-  for (int segment = 0; segment < grid.segments; ++segment) {
-    const FastInverse path = grid.coordinatesOf(task.station, column_index, segment);
-    const OtherLosses others(task, static_cast<float>(path.distance_m),
-                             task.terminal.isSet() ? filler.groundBelow(c, path) : 0);
-    for (int k = max(lowest, grid.firstLayer(segment)); k < grid.firstLayer(segment + 1); ++k) {
-      const auto height_msl_m = static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[k])));
-      filler.set(k, c, others.lossDb(height_msl_m));
-    }
-  }
-}
-
-/// Receivers of a warp's tile that wait for lanes.
-class ReceiverQueue {
- public:
-  __device__ ReceiverQueue(const Filler& filler, Receiver* memory) : filler_(filler), memory_(memory) {}
-
-  /// Adds the receivers of the first `count` lanes.
-  __device__ void add(const Receiver& receiver, int count) {
-    if (waiting_ + count > kWarpLanes) fill();
-    __syncwarp();
-    const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
-    if (lane < count) memory_[waiting_ + lane] = receiver;
-    waiting_ += count;
-    __syncwarp();
-  }
-  /// Sets the voxels of those that wait.
-  __device__ void fill() {
-    if (waiting_ > 0) set(filler_, memory_, waiting_);
-    waiting_ = 0;
-  }
-
- private:
-  static __device__ __noinline__ void set(const Filler& filler, const Receiver* receivers, int count) {
-    const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
-    if (lane >= count) return;
-    const Receiver receiver = receivers[lane];
-    const DiffractionTask& task = filler.task;
-    float excess_db = receiver.lossDb(task.model.model);
-    if (!task.air.isClear() || task.terminal.isSet()) {
-      const float height_msl_m = filler.heightOf(receiver.column, receiver.layer);
-      excess_db += OtherLosses(task, receiver.distance_m, receiver.ground_msl_m).lossDb(height_msl_m);
-    }
-    filler.set(receiver.layer, receiver.column, excess_db);
-  }
-
-  const Filler& filler_;
-  Receiver* memory_;
-  int waiting_ = 0;
-};
-
-/// A segment of a column, by a warp.
-__device__ void fillSegment(const Filler& filler, int c, int segment, const WarpPath& path, WarpPosts& posts,
-                            PathPost* memory, ReceiverQueue& queue) {
-  const DiffractionTask& task = filler.task;
-  const ExcessGrid& grid = filler.grid;
-  const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
-  const int end = grid.firstLayer(segment + 1);
-  const int lowest = max(grid.firstValid(static_cast<std::size_t>(c)), grid.firstLayer(segment));
-  if (lowest >= end) return;
-  const int count_of_posts = posts.read(task.at_crossings, memory);
-  const auto distance_m = static_cast<float>(path.to.distance_m);
-  const float ground_msl_m = filler.groundBelow(c, path.to);
-  WarpColumn receivers(task, memory, count_of_posts, distance_m, ground_msl_m);
-  const auto receiver_m = [&](int k) {
-    const float height_msl_m = filler.heightOf(c, min(k, end - 1));
-    return receivers.receiver_m(task.station.refraction.exponential
-                                    ? effectiveHeight_m(task.station, height_msl_m, path.to.distance_m)
-                                    : height_msl_m);
+  const auto set = [&](int k, float excess_db) {
+    task.to.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + column_index, excess_db);
   };
-  float rx_m = receiver_m(lowest + lane);
-  if (!receivers.survey(__shfl_sync(kAllLanes, rx_m, 0))) {
-    for (int k = lowest + lane; k < end; k += kWarpLanes) filler.set(k, c, NAN);
-    if (lane == 0) markUnknown(task.to, c);
-    return;
-  }
+  const int end = grid.firstLayer(segment + 1);
+  int k = max(grid.firstValid(column_index), grid.firstLayer(segment));
+  if (k >= end) return;
+  const GridColumn column = grid.columns[column_index];
+  const FastInverse path = grid.coordinatesOf(task.station, column_index, segment);
+  const float ground_msl_m =
+      grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(task.station, task.ground, path);
+  const propagation::AirColumn air(task.air, static_cast<float>(path.distance_m));
+  const auto heightOf = [&](int layer) {
+    return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[min(layer, end - 1)])));
+  };
+  const auto addOthers = [&](int layer, float loss_db) {
+    if (!task.air.isClear()) loss_db += air.lossDb(heightOf(layer));
+    if (task.terminal.isSet())
+      loss_db += task.terminal.lossDb(static_cast<float>(path.distance_m), heightOf(layer) - ground_msl_m);
+    set(layer, loss_db);
+  };
+  if (path.distance_m > 0) {  // not at the emitter itself
+    ColumnPosts posts(task.station, task.ground, path, task.at_crossings);
+    Receivers receivers(task, posts, path, ground_msl_m);
+    typename Receivers::Maxima most[kReceivers];
+    float rx_m[kReceivers];
+    const auto setReceivers = [&] {
+#pragma unroll
+      for (int j = 0; j < kReceivers; ++j) {
+        const float height_msl_m = heightOf(k + j);
+        rx_m[j] = receivers.receiver_m(task.station.refraction.exponential
+                                           ? effectiveHeight_m(task.station, height_msl_m, path.distance_m)
+                                           : height_msl_m);
+      }
+    };
+    setReceivers();
+    bool is_known = true;
+    if constexpr (!kOnePass) is_known = receivers.survey<0>(rx_m[0], rx_m, most);
+    while (k < end && is_known) {
+      if constexpr (kOnePass) {
+        is_known = receivers.survey<kReceivers>(rx_m[0], rx_m, most);
+        if (!is_known) break;
+      } else {
+        if (!receivers.isLossy(rx_m[0])) break;
+        receivers.find<kReceivers>(rx_m, most);
+      }
 #pragma unroll 1
-  for (int first = lowest; first < end; first += kWarpLanes) {
-    if (first > lowest) rx_m = receiver_m(first + lane);
-    const int count = __popc(__ballot_sync(kAllLanes, first + lane < end && receivers.isLossy(rx_m)));
-    if (count == 0) return;
-    Receiver receiver = receivers.find(rx_m, count);
-    receiver.column = c;
-    receiver.layer = first + lane;
-    receiver.ground_msl_m = ground_msl_m;
-    queue.add(receiver, count);
-    if (count < kWarpLanes) return;
+      for (int j = 0; j < kReceivers && k + j < end; ++j) {
+        addOthers(k + j, receivers.isLossy(rx_m[j]) ? receivers.lossDb(rx_m[j], most[j]) : 0);
+      }
+      k += kReceivers;
+      setReceivers();
+    }
+    if (!is_known) {
+      for (; k < end; ++k) set(k, NAN);
+      markUnknown(task.to, c);
+    }
   }
+  for (; k < end; ++k) addOthers(k, 0);
 }
 
-__global__ void __launch_bounds__(kColumnThreads, 6)
+template <int kReceivers, bool kOnePass>
+__global__ void __launch_bounds__(kColumnThreads, kOnePass ? KB1 : KB2)
     diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
-                      const __grid_constant__ WarpTiles tiles, const __grid_constant__ PathMemory memory) {
-  __shared__ alignas(Receiver) unsigned char waiting[kColumnThreads * sizeof(Receiver)];
-  Receiver* const of_warp = reinterpret_cast<Receiver*>(waiting) + threadIdx.x / kWarpLanes * kWarpLanes;
-  PathPost* const posts_memory = memory.ofWarp();
-  const int lane = static_cast<int>(threadIdx.x) % kWarpLanes;
-  tiles.eachTile([&](int number, int tile) {
-    const Filler filler{tasks[number], grid};
-    const DiffractionTask& task = filler.task;
-    ReceiverQueue queue(filler, of_warp);
-    const int mine = lane < WarpMemory::kPaths ? tiles.columnOf(grid, tile, lane) : -1;
-    if (mine >= 0 && grid.isWithoutGround(static_cast<std::size_t>(mine))) {
-      for (int k = grid.firstValid(static_cast<std::size_t>(mine)); k < grid.layers; ++k)
-        filler.set(k, mine, NAN);
-      markUnknown(task.to, mine);
-    }
-    for (int segment = 0; segment < grid.segments; ++segment) {
-      eachPath(
-          task.station, task.ground, grid, tiles, tile, segment, warpMemory(),
-          [&](int c) {
-            const auto column = static_cast<std::size_t>(c);
-            return !grid.isWithoutGround(column) && grid.firstValid(column) < grid.layers;
-          },
-          [&](int c, const WarpPath& path, WarpPosts posts) {
-            fillSegment(filler, c, segment, path, posts, posts_memory, queue);
-          });
-    }
-    queue.fill();
+                      const __grid_constant__ Tiles tiles) {
+  tiles.eachColumn(grid, [&](int number, int c, int) {
+    const DiffractionTask& task = tasks[number];
+    const auto column = static_cast<std::size_t>(c);
+    const bool is_unknown = grid.isWithoutGround(column);
+    const int lowest = grid.firstValid(column);
+    for (int k = 0; k < (is_unknown ? grid.layers : lowest); ++k)
+      task.to.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + column, k < lowest ? 0 : NAN);
+    if (is_unknown) return markUnknown(task.to, c);
+    for (int segment = 0; segment < grid.segments; ++segment)
+      fillSegment<kReceivers, kOnePass>(task, grid, c, segment);
   });
 }
 
 }  // namespace
 
-void fillDiffraction(const DiffractionTask* tasks, int count, int posts, const ExcessGrid& grid, int row,
-                     const ScratchMemory& scratch, cudaStream_t stream) {
-  const auto columns = static_cast<unsigned>(grid.column_count);
-  othersKernel<<<dim3((columns + kColumnThreads - 1) / kColumnThreads, static_cast<unsigned>(count)),
-                 kColumnThreads, 0, stream>>>(tasks, grid);
-  emscape::cuda::checkLaunch("losses besides diffraction");
-  const WarpTiles tiles(grid, row, count);
-  const PathMemory memory(scratch, posts);
-  emscape::cuda::check(cudaFuncSetAttribute(diffractionKernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                            static_cast<int>(memory.sharedBytes())),
-                       "cudaFuncSetAttribute");
-  diffractionKernel<<<tiles.blocks(memory.mostBlocks()), kColumnThreads, memory.sharedBytes(), stream>>>(
-      tasks, grid, tiles, memory);
+void fillDiffraction(const DiffractionTask* tasks, int count, const ExcessGrid& grid, int row,
+                     cudaStream_t stream) {
+  const Tiles tiles(grid, row, count);
+  const auto launch = [&](auto kernel) {
+    kernel<<<static_cast<unsigned>(tiles.count()), kColumnThreads, 0, stream>>>(tasks, grid, tiles);
+  };
+  if (grid.layers == 1) {
+    launch(diffractionKernel<1, true>);
+  } else if (grid.layers <= 16 && grid.every_height) {
+    launch(diffractionKernel<4, true>);
+  } else {
+    launch(diffractionKernel<KR, false>);
+  }
   emscape::cuda::checkLaunch("diffraction");
 }
 

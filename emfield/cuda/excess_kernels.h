@@ -33,12 +33,11 @@ struct DiffractionTask {
   propagation::TerminalClutter terminal = {};
   bool at_crossings = false;  ///< see chord_crossings.h; false: regular posts
 };
-/// Several emitters at once: one warp per column.
-/// @param posts  the largest number of posts of a path
+/// Several emitters at once: one thread per column, which stores no posts.
 /// @param grid   in device memory; layers that do not count get no excess
 /// @param row    columns along x
-void fillDiffraction(const DiffractionTask* tasks, int count, int posts, const ExcessGrid& grid, int row,
-                     const ScratchMemory& scratch, cudaStream_t stream);
+void fillDiffraction(const DiffractionTask* tasks, int count, const ExcessGrid& grid, int row,
+                     cudaStream_t stream);
 
 /// `parabolic_equation` of one emitter. Pointers are to device memory.
 struct EquationTask {

@@ -48,9 +48,16 @@ struct LineCrossings {
   EMSCAPE_HD float part(int n, int line) const {
     const float* const c = coordinate.c;
     const float to_line = static_cast<float>(line) - c[0], square = c[1] * c[1] + 4 * c[2] * to_line;
-    const float sum = c[1] + to_root * std::sqrt(square > 0 ? square : 0.0f);
     const bool is_first = n < before_turn;
+#ifdef __CUDA_ARCH__  // within 2e-7 of the part
+    float root;
+    asm("sqrt.approx.f32 %0, %1;" : "=f"(root) : "f"(square > 0 ? square : 0.0f));
+    const float sum = c[1] + to_root * root;
+    const float part = __fdividef(is_first ? 2 * to_line : -sum, is_first ? sum : 2 * c[2]);
+#else
+    const float sum = c[1] + to_root * std::sqrt(square > 0 ? square : 0.0f);
     const float part = (is_first ? 2 * to_line : -sum) / (is_first ? sum : 2 * c[2]);
+#endif
     return part > 0 ? (part < 1 ? part : 1.0f) : 0.0f;
   }
   /// Number of crossings before a part of the chord, at which the coordinate is in a cell: 0..count. That of
