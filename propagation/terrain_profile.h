@@ -8,7 +8,8 @@ namespace emscape::propagation {
 /// Land cover of a post over the sea, in place of a height.
 constexpr float kSeaCover = -1;
 
-/// Terrain along a path: `count` posts, ranges strictly increasing from 0 at the transmitter.
+/// Terrain along a path: `count` posts, ranges increasing from 0 at the transmitter; two posts in
+/// between may be at the same range, up to rounding.
 struct TerrainProfile {
   const double* range_m = nullptr;
   const float* height_msl_m = nullptr;

@@ -18,6 +18,7 @@
 #include "emscape/base/units.h"
 #include "emscape/base/work.h"
 #include "emscape/emfield/link/path_excess.h"
+#include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
 namespace {
@@ -244,9 +245,12 @@ Computed compute(const scenario::Scenario& scenario, const scenario::Emitter& em
                  MeasuredPath& path) {
   Computed found;
   const double wavelength = wavelength_m(path.frequency_hz);
-  const PathProfile profile = readPathProfile(path.transmitter, path.receiver, scenario.atmosphere, terrain);
+  const auto profileOf = [&](bool at_crossings) {
+    return readPathProfile(path.transmitter, path.receiver, scenario.atmosphere, terrain, at_crossings);
+  };
+  const PathProfile regular = profileOf(false), at_crossings = profileOf(true);
   const double free_space_db = 2 * ratioToDb(4 * kPi * path.distance_m / wavelength);
-  path.terrain = terrainStateOf(profile, wavelength);
+  path.terrain = terrainStateOf(at_crossings, wavelength);
   for (const propagation::PropagationModel model : models) {
     scenario::Emitter by_model = emitter;
     by_model.frequency_hz = path.frequency_hz;
@@ -255,6 +259,7 @@ Computed compute(const scenario::Scenario& scenario, const scenario::Emitter& em
     std::string refusal;
     double loss_db = kNoLoss;
     try {
+      const PathProfile& profile = propagation::readsCrossings(by_model.propagation) ? at_crossings : regular;
       const PathExcess excess = pathExcess(scenario, by_model, {}, profile, terrain);
       loss_db = free_space_db + excess.loss_db;
       found.warnings.insert(found.warnings.end(), excess.warnings.begin(), excess.warnings.end());

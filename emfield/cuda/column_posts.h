@@ -49,7 +49,7 @@ class ColumnPosts {
       bool with_crossings = !isRegular(n);
       if (with_crossings) {
         // Posts besides the crossings: the first regular ones, or the chord's beginning.
-        const int others_end = n == 0 ? max(min(ground_.near_count, regular), 1) : first;
+        const int others_end = n == 0 ? max(min(ground_.near_count, min(end, 128)), 1) : first;
         const double* const others_m = n == 0 ? ground_.ranges_m + 1 : &begin_m;
         const int others = n == 0 ? others_end - 1 : 1;
         const Found found = kOrdered ? eachInOrder(chord, begin_m, of_path.length_m, others_m, others, visit)
@@ -220,57 +220,73 @@ class ColumnPosts {
     return isnan(unknown) ? Found::void_post : Found::all;
   }
 
-  /// The crossings of a chord and other posts, in their order.
+  /// The crossings of a chord and other posts, in their order: between two crossings with the lines of which
+  /// there are more, those with the others.
   template <class Visit>
   __device__ Found eachInOrder(const TerrainChord& chord, double begin_m, double chord_m,
                                const double* others_m, int others, const Visit& visit) const {
     if (chord.in_raster.corner_msl_m == nullptr) return Found::too_many;
     const ChordCrossings crossings(chord.in_raster);
     if (crossings.count() > ground_.maxCrossings(chord_m)) return Found::too_many;
-    const LineCrossings columns = crossings.columns, rows = crossings.rows;
+    const bool by_columns = crossings.columns.count >= crossings.rows.count;
+    const LineCrossings most = by_columns ? crossings.columns : crossings.rows;
+    const LineCrossings few = by_columns ? crossings.rows : crossings.columns;
+    const int row_posts = crossings.row_posts;
+    const int most_step = by_columns ? 1 : row_posts, few_step = by_columns ? row_posts : 1;
     const float* const corner_msl_m = crossings.corner_msl_m;
-    const int row_posts = crossings.row_posts, count = crossings.count() + others;
     const auto from_m = static_cast<float>(begin_m), length_m = static_cast<float>(chord_m);
     const float farthest_m = this->farthest_m();
-    const auto partOf = [](const LineCrossings& of, int n, int line) {
-      constexpr float kNone = 2;
-      return n < of.count ? of.part(n, line) : kNone;
-    };
-    const auto otherOf = [&](int n) { return n < others ? static_cast<float>(others_m[n]) : HUGE_VALF; };
-    int column = 0, row = 0, other = 0;
-    int column_line = columns.line(0), row_line = rows.line(0);
-    float column_part = partOf(columns, 0, column_line), row_part = partOf(rows, 0, row_line);
-    float other_m = otherOf(0), unknown = 0;
-#pragma unroll 1
-    for (int i = 0; i < count; ++i) {
-      const bool is_column = column_part < row_part;
-      const float part = is_column ? column_part : row_part;
-      PathPost post;
-      post.range_m = part > 1 ? HUGE_VALF : fmaxf(fmaf(length_m, part, from_m), 0.01f);
-      if (other_m <= post.range_m) {
-        post = {other_m, heightAt(chord, others_m[other])};
-        other_m = otherOf(++other);
-      } else {
-        const int line = is_column ? column_line : row_line;
-        const float across = is_column ? rows.coordinate.at(part) : columns.coordinate.at(part);
-        const int cell = static_cast<int>(across);
-        const float* const near = corner_msl_m + (is_column ? cell * row_posts + line : line * row_posts + cell);
-        post.height_msl_m = lerp(near[0], near[is_column ? row_posts : 1], across - static_cast<float>(cell));
-        unknown += post.height_msl_m - post.height_msl_m;
-        if (ground_.is_raised)
-          post.height_msl_m = raised(chord, static_cast<double>(post.range_m), post.height_msl_m);
-        const LineCrossings of = is_column ? columns : rows;
-        const int next = is_column ? ++column : ++row, next_line = of.line(next);
-        const float next_part = partOf(of, next, next_line);
-        column_line = is_column ? next_line : column_line;
-        row_line = is_column ? row_line : next_line;
-        column_part = is_column ? next_part : column_part;
-        row_part = is_column ? row_part : next_part;
+    const bool is_raised = ground_.is_raised;
+    int other = 0;
+    float other_m = others > 0 ? static_cast<float>(others_m[0]) : HUGE_VALF, unknown = 0;
+    const auto add = [&](float part, float height_msl_m) {
+      PathPost post{fminf(fmaxf(fmaf(length_m, part, from_m), 0.01f), farthest_m), height_msl_m};
+      unknown += height_msl_m;
+      while (other_m <= post.range_m) {
+        visit(PathPost{fminf(other_m, farthest_m), heightAt(chord, others_m[other])});
+        other_m = ++other < others ? static_cast<float>(others_m[other]) : HUGE_VALF;
       }
-      post.range_m = fminf(post.range_m, farthest_m);
+      if (is_raised) post.height_msl_m = raised(chord, static_cast<double>(post.range_m), height_msl_m);
       visit(post);
+    };
+    int cell = few.first_cell;
+    for (int n = 0; n <= most.count; ++n) {
+      int line = 0, next_cell = few.last_cell;
+      float part = 1, across = 0;
+      if (n < most.count) {
+        line = most.line(n);
+        part = partOf(most, n < most.before_turn, line);
+        across = few.coordinate.at(part);
+        next_cell = static_cast<int>(across);
+      }
+      while (cell != next_cell) {
+        const bool rises = cell < next_cell;
+        const int few_line = rises ? cell + 1 : cell;
+        const float few_part = partOf(few, rises == (few.to_root > 0), few_line);
+        const float along = most.coordinate.at(few_part);
+        const int of_most = static_cast<int>(along);
+        const float* const near = corner_msl_m + (few_line * few_step + of_most * most_step);
+        add(few_part, lerp(near[0], near[most_step], along - static_cast<float>(of_most)));
+        cell += rises ? 1 : -1;
+      }
+      if (n == most.count) break;
+      const float* const near = corner_msl_m + (line * most_step + next_cell * few_step);
+      add(part, lerp(near[0], near[few_step], across - static_cast<float>(next_cell)));
     }
-    return unknown == 0 ? Found::all : Found::void_post;
+    while (other < others) {
+      visit(PathPost{fminf(static_cast<float>(others_m[other]), farthest_m), heightAt(chord, others_m[other])});
+      ++other;
+    }
+    return isnan(unknown) ? Found::void_post : Found::all;
+  }
+
+  /// LineCrossings::part(), within 2e-7.
+  static __device__ float partOf(const LineCrossings& of, bool is_first, int line) {
+    const float* const c = of.coordinate.c;
+    const float to_line = static_cast<float>(line) - c[0];
+    const float sum = fmaf(of.to_root, fastRoot(fmaxf(fmaf(4 * c[2], to_line, c[1] * c[1]), 0)), c[1]);
+    const float part = (is_first ? 2 * to_line : -sum) * fastReciprocal(is_first ? sum : 2 * c[2]);
+    return fminf(fmaxf(part, 0), 1);
   }
 
   const Station& station_;

@@ -103,9 +103,8 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   }
   const propagation::PathExtent extent = pathExtent(station, setup_.columns);
   work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
-  work.ground.is_smooth = setup_.terrain == nullptr;
+  work.ground = groundPosts(setup_.terrain.get(), work.ranges_m);
   if (terrain_ != nullptr) work.ground.terrain = terrain_->view();
-  work.ground.range_count = static_cast<int>(work.ranges_m.size());
   work.has_mechanisms = setup_.needs[request.emitter].mechanisms && hasMechanisms(model);
   if (setup_.needs[request.emitter].clutter_map)
     work.clutter = clutterMapTask(scenario, emitter, station, &extent);
@@ -308,6 +307,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
       task = {std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station, work.ground,
               work.excess, work.model->terminal};
       task.ground.is_raised = work.model->is_raised && work.ground.terrain.hasCover();
+      task.at_crossings = true;
     } else {
       continue;
     }

@@ -210,10 +210,8 @@ class Receivers {
 #pragma unroll
     for (int j = 0; j < kReceivers; ++j) {
       most[j].edge = kBoth && !(slope[j] <= tx) ? nearest[j] : edge[j];
-      if constexpr (kEarth) {
-        most[j].plain_rx_slope = plain_rx[j];
-        most[j].plain_height_m = plain[j];
-      }
+      most[j].plain_rx_slope = plain_rx[j];
+      most[j].plain_height_m = plain[j];
     }
     return unknown == 0;
   }
@@ -327,8 +325,9 @@ __device__ void fillSegment(const DiffractionTask& task, const ExcessGrid& grid,
   for (; k < end; ++k) addOthers(k, 0);
 }
 
+// Fewer registers, for more threads at a time, take more time.
 template <int kReceivers, bool kOnePass>
-__global__ void __launch_bounds__(kColumnThreads, kOnePass ? KB1 : KB2)
+__global__ void __launch_bounds__(kColumnThreads, 4)
     diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
                       const __grid_constant__ Tiles tiles) {
   tiles.eachColumn(grid, [&](int number, int c, int) {
@@ -357,7 +356,7 @@ void fillDiffraction(const DiffractionTask* tasks, int count, const ExcessGrid& 
   } else if (grid.layers <= 16 && grid.every_height) {
     launch(diffractionKernel<4, true>);
   } else {
-    launch(diffractionKernel<KR, false>);
+    launch(diffractionKernel<8, false>);
   }
   emscape::cuda::checkLaunch("diffraction");
 }

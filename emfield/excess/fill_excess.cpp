@@ -29,6 +29,16 @@ EMSCAPE_SIMD_CLONES void setCodes(const float* excess_db, int layers, int count,
   }
 }
 
+/// PostReader of a model.
+template <class Model>
+struct ProfileReader {
+  int operator()(const Station& station, const GroundPosts& ground, const FastInverse& path, double* range_m,
+                 float* height_msl_m) const {
+    constexpr bool at_crossings = propagation::ReadsCrossings<Model>::value;
+    return readProfileCpu(station, ground, path, at_crossings, range_m, height_msl_m);
+  }
+};
+
 /// Fills the columns whose paths need not be read whole, where there is a search for that.
 /// @return for each column whether it is left; empty: all are
 template <class Model>
@@ -73,7 +83,7 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
           setAll(NAN);
           of_column = kMissingTerrain;
         } else {
-          of_column = task.fillColumn(column, scratch, readPostsCpu, out.reflected, out.mechanisms);
+          of_column = task.fillColumn(column, scratch, ProfileReader<Model>{}, out.reflected, out.mechanisms);
         }
         if (of_column & kMissingTerrain) out.markUnknown(column);
         warnings |= of_column;

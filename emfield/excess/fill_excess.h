@@ -89,7 +89,7 @@ struct ExcessTask {
   propagation::TerminalClutter terminal = {};
 
   /// Posts of the longest profile.
-  int posts() const { return ground.range_count + 1; }
+  int posts() const { return maxPosts(station, ground, propagation::ReadsCrossings<Model>::value); }
 
   /// Builds the ExcessColumn of a segment of a column.
   /// @param read  PostReader, or a function with the same result

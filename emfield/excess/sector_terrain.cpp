@@ -55,9 +55,9 @@ EMSCAPE_SIMD_CLONES void readMiddle(const MiddleTask& task, int groups, float* h
 /// Inputs of the bounds of a chord's blocks.
 struct ChordTask {
   SectorChord chord;
-  const float *first_part, *last_part, *last_m;  ///< SectorPosts
-  float known_part;                              ///< of the last post that is known
-  const float* steepest;                         ///< TerrainBounds
+  const float *first_part, *last_part, *last_m, *between_m;  ///< SectorPosts
+  float known_part;                                          ///< of the last post that is known
+  const float* steepest;                                     ///< TerrainBounds
   int row_windows;
   float half_width_rad;
 };
@@ -74,7 +74,8 @@ EMSCAPE_SIMD_CLONES void boundBlocks(const ChordTask& task, int first_block, int
   constexpr float kRounding_m = 0.01f;  // of heights
   const SectorChord chord = task.chord;
   const float *const first_part = task.first_part, *const last_part = task.last_part;
-  const float *const last_m = task.last_m, *const steepest = task.steepest;
+  const float *const last_m = task.last_m, *const between_m = task.between_m;
+  const float* const steepest = task.steepest;
   const int row_windows = task.row_windows;
   const float half_width_rad = task.half_width_rad, known_part = task.known_part;
 #pragma omp simd
@@ -100,7 +101,8 @@ EMSCAPE_SIMD_CLONES void boundBlocks(const ChordTask& task, int first_block, int
     const float slope = steepest[j * row_windows + i];
     const float width = columns.high - columns.low, height = rows.high - rows.low;
     const float longer = width > height ? width : height;
-    slack_m[b] = longer <= TerrainBounds::kMaxExtent ? slope * half_width_rad * last_m[b] + kRounding_m : NAN;
+    const float away_m = half_width_rad * last_m[b] + between_m[b];
+    slack_m[b] = longer <= TerrainBounds::kMaxExtent ? slope * away_m + kRounding_m : NAN;
   }
 }
 
@@ -119,14 +121,25 @@ bool isWithin(const scenario::TerrainRaster& raster, const ChordInRaster& chord,
 }  // namespace
 
 SectorPosts::SectorPosts(const Station& station, const GroundPosts& ground) {
+  constexpr float kFirst_m = 0.01f;  // of an obstacle
   const int count = ground.range_count;
-  for (int i = 0; i < count; ++i) range_m_.push_back(static_cast<float>(ground.ranges_m[i]));
-  for (int first = 0; first < count; first += kBlock) {
-    const int first_obstacle = std::max(first, 1), last = std::min(first + kBlock, count) - 1;
-    first_m_.push_back(range_m_[std::min(first_obstacle, count - 1)]);
-    last_m_.push_back(range_m_[std::max(last, std::min(first_obstacle, count - 1))]);
-  }
   if (count < 2) return;
+  for (int i = 0; i < count; ++i) {
+    range_m_.push_back(static_cast<float>(ground.ranges_m[i]));
+    const auto between = [&](int post) { return (ground.ranges_m[post] + ground.ranges_m[post + 1]) / 2; };
+    nearest_m_.push_back(i < 2 ? kFirst_m : farthest_m_.back());
+    farthest_m_.push_back(static_cast<float>(i + 1 < count ? between(std::max(i, 1)) : ground.ranges_m[i]));
+  }
+  for (int first = 0; first < count; first += kBlock) {
+    const int end = std::min(first + kBlock, count);
+    first_m_.push_back(nearest_m_[first]);
+    last_m_.push_back(farthest_m_[end - 1]);
+    float between_m = 0;
+    for (int i = std::max(first, 1); i < end; ++i) {
+      between_m = std::max({between_m, range_m_[i] - nearest_m_[i], farthest_m_[i] - range_m_[i]});
+    }
+    between_m_.push_back(between_m);
+  }
   const double step_m = ground.ranges_m[count - 1] - ground.ranges_m[count - 2];
   const double longest_m = std::min(kMaxChord_m, maxChord_m(std::fabs(station.geodesy.station.up.z)));
   blocks_per_chord_ = static_cast<int>(longest_m / (kBlock * step_m));
@@ -135,10 +148,15 @@ SectorPosts::SectorPosts(const Station& station, const GroundPosts& ground) {
   for (int i = 0; i < count; ++i) {
     const int first = i / per_chord * per_chord, end = std::min(first + per_chord, count - 1);
     const double length_m = ground.ranges_m[end] - ground.ranges_m[first];
-    part_.push_back(
-        length_m > 0 ? static_cast<float>((ground.ranges_m[i] - ground.ranges_m[first]) / length_m) : 0);
-    if (i % kBlock == 0) first_part_.push_back(part_.back());
-    if (i % kBlock == kBlock - 1 || i == count - 1) last_part_.push_back(part_.back());
+    const auto partAt = [&](double range_m) {
+      return length_m > 0 ? static_cast<float>((range_m - ground.ranges_m[first]) / length_m) : 0;
+    };
+    part_.push_back(partAt(ground.ranges_m[i]));
+    const int block = i / kBlock;
+    if (i % kBlock == 0) first_part_.push_back(i > 0 ? partAt(static_cast<double>(first_m_[block])) : 0);
+    if (i % kBlock == kBlock - 1 || i == count - 1) {
+      last_part_.push_back(partAt(static_cast<double>(last_m_[block])));
+    }
   }
 }
 
@@ -180,9 +198,10 @@ void SectorTerrain::read(const PathSectors::Azimuth& middle, double half_width_r
     if (posts_read_ == first) break;
     const int last = posts_read_ - 1;
     spread(index, last);
-    boundBlocks({chords_[index], posts_.firstPart(), posts_.lastPart(), posts_.last_m(), posts_.part()[last],
-                 bounds_.steepest(), bounds_.rowWindows(), static_cast<float>(half_width_rad)},
-                first / kBlock, blocks(), slack_m_.data());
+    boundBlocks(
+        {chords_[index], posts_.firstPart(), posts_.lastPart(), posts_.last_m(), posts_.between_m(),
+         posts_.part()[last], bounds_.steepest(), bounds_.rowWindows(), static_cast<float>(half_width_rad)},
+        first / kBlock, blocks(), slack_m_.data());
     if (posts_read_ < end) break;
   }
   if (posts_read_ == 0) return;

@@ -1,5 +1,5 @@
-/// The ground below paths of nearly the same azimuth: exact heights at the posts of each path, and bounds of
-/// the heights of all paths.
+/// The ground below paths of nearly the same azimuth: chords for the posts of each path, and bounds of the
+/// heights of all paths.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,9 @@
 
 namespace emscape::emfield {
 
-/// The posts of all paths from a station, in blocks, and chords of whole blocks. Immutable once made.
+/// The regular posts of a station, in blocks, and chords of whole blocks. A post stands for the ranges that
+/// are nearer to it than to others, a block for those of its posts: the bounds of a block are made from the
+/// ground at its posts in the middle of a sector, and paths read their crossings in it. Immutable once made.
 class SectorPosts {
  public:
   static constexpr int kBlock = 8;  ///< posts
@@ -32,14 +34,18 @@ class SectorPosts {
   const float* range_m() const { return range_m_.data(); }
   /// Position of post i in its chord: 0 at the chord's first post, 1 at that of the next chord.
   const float* part() const { return part_.data(); }
-  /// The same for the first and the last post of each block.
-  const float* firstPart() const { return first_part_.data(); }
-  const float* lastPart() const { return last_part_.data(); }
-  /// Ranges of the first and the last obstacle of each block: of its posts except the emitter's.
+  /// The ranges that post i stands for.
+  const float* nearest_m() const { return nearest_m_.data(); }
+  const float* farthest_m() const { return farthest_m_.data(); }
+  /// The ranges of the obstacles in each block, and their positions in its chord.
   const float* first_m() const { return first_m_.data(); }
   const float* last_m() const { return last_m_.data(); }
+  const float* firstPart() const { return first_part_.data(); }
+  const float* lastPart() const { return last_part_.data(); }
+  /// Largest distance of such a range from a post of the block.
+  const float* between_m() const { return between_m_.data(); }
 
-  /// Index of an obstacle in arrays of groups: first the first posts of a group's blocks, then the second
+  /// Index of a post in arrays of groups: first the first posts of a group's blocks, then the second
   /// ones, and so on, so that loops over the blocks are vector loops. The entry of the emitter's post is a
   /// copy of the first obstacle, and entries beyond the last post are copies of the last one.
   static int inGroups(int post) {
@@ -52,7 +58,8 @@ class SectorPosts {
 
  private:
   int blocks_per_chord_ = 0;
-  std::vector<float> range_m_, part_, first_part_, last_part_, first_m_, last_m_;
+  std::vector<float> range_m_, part_, nearest_m_, farthest_m_;
+  std::vector<float> first_m_, last_m_, first_part_, last_part_, between_m_;  ///< per block
 };
 
 /// A chord of all paths of a sector: the parabolas of positions in the raster, c[0] + s (c[1] + s c[2]), with
@@ -82,10 +89,10 @@ class SectorTerrain {
   int blocks() const { return (posts_read_ + SectorPosts::kBlock - 1) / SectorPosts::kBlock; }
   /// Height of the ground below the emitter.
   float base_msl_m() const { return base_msl_m_; }
-  /// Heights of the obstacles in the middle of the sector, as SectorPosts::inGroups() orders them.
+  /// Heights of the regular posts in the middle of the sector, as SectorPosts::inGroups() orders them.
   const float* height_msl_m() const { return height_msl_m_.data(); }
-  /// Per block: bound of the difference (m) between these and the heights at the same range anywhere in the
-  /// sector; infinity if there may be a void.
+  /// Per block: bound of the difference (m) between the height at the post that stands for a range and the
+  /// heights at this range anywhere in the sector; infinity if there may be a void.
   const float* slack_m() const { return slack_m_.data(); }
   const SectorChord& chordOf(int block) const { return chords_[block / posts_.blocksPerChord()]; }
   int rowPosts() const { return raster_->columns; }

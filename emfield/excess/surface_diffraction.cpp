@@ -16,6 +16,9 @@ namespace {
 using propagation::DiffractionModel;
 
 constexpr int kBlock = SectorPosts::kBlock, kGroup = SectorPosts::kGroup;
+/// Posts of a path in a block: crossings with columns, with rows, and regular posts in the emitter's cell.
+constexpr int kLines = 8, kCrossings = 2 * kLines, kOfBlock = kCrossings + kBlock;
+static_assert(kLines > TerrainBounds::kMaxExtent);
 
 /// Number of groups of kGroup that contain a number of blocks, or of groups.
 int groupsOf(int count) {
@@ -30,8 +33,6 @@ struct SectorBounds {
   std::vector<float> lowered_m;         ///< largest lowered height of an obstacle
   std::vector<float> tx_slope;          ///< largest slope from the transmitter to a lowered obstacle
   std::vector<float> highest_tx_slope;  ///< the largest over this block and all before it
-  /// The last block before this one that may hold the largest slope of those before this one; -1: none.
-  std::vector<int> steep_before;
   /// The same of groups.
   std::vector<float> group_lowered_m, group_tx_slope;
 };
@@ -50,19 +51,20 @@ struct SectorTrend {
 struct Posts {
   DiffractionModel<float> model;
   const double* exact_range_m;
-  const float *range_m, *part;
-  int count;
-  const float *first_m, *last_m;              ///< per block: range of its first and last obstacle
+  const SectorPosts* of_sectors;
+  int near_count;                             ///< GroundPosts
+  const float *first_m, *last_m;              ///< per block: ranges of its obstacles
   const float *group_first_m, *group_last_m;  ///< per group
-  /// Of the obstacles in groups (SectorPosts): the earth's bulge r^2 / (2 a), and 1 / r.
-  const float *lowering_m, *per_range;
+  /// In groups (SectorPosts), of the ranges that a post stands for: the least bulge of the earth r^2 / (2 a),
+  /// and 1 / r of the nearest and the farthest.
+  const float *lowering_m, *per_nearest, *per_farthest;
 };
 
 /// Work of one thread.
 struct PathMemory {
-  std::vector<float> height_m;  ///< of the posts of the blocks that were read
-  std::vector<int> read_for;    ///< per block: number of the path for which it was read
-  std::vector<float> rx_m;      ///< heights of the receivers, as inputs of the model
+  std::vector<float> range_m, height_m;  ///< of the posts of the blocks that were read, kOfBlock each
+  std::vector<int> read_for;             ///< per block: number of the path for which it was read
+  std::vector<float> rx_m;               ///< heights of the receivers, as inputs of the model
   std::vector<int> rx_block,
       nu_block;  ///< per height: the blocks that determined the loss of the previous path
   int tx_block = 0;
@@ -83,8 +85,9 @@ struct Maximum {
 /// The path to a column.
 struct Path {
   float distance_m;
-  int before;  ///< last post before the receivers
+  int before;  ///< last regular post before the receivers
   int blocks;
+  float last_m;  ///< largest range of an obstacle
   int number;
   float aside;  ///< in the sector, -1..1
 };
@@ -102,8 +105,8 @@ class Search {
   template <class BoundOf, class ValueOf>
   void operator()(const BoundOf& boundOf, const ValueOf& valueOf, Maximum& most) const {
     const int guess = std::min(most.block, path_.blocks - 1);
-    const float before_m = posts_.range_m[path_.before];
-    const auto clipped = [before_m](float last_m) { return last_m < before_m ? last_m : before_m; };
+    const float farthest_m = path_.last_m;
+    const auto clipped = [farthest_m](float last_m) { return last_m < farthest_m ? last_m : farthest_m; };
     if (boundOf(bounds_.lowered_m[guess], bounds_.tx_slope[guess], posts_.first_m[guess],
                 clipped(posts_.last_m[guess])) > most.value) {
       visit(guess, valueOf, most);
@@ -119,19 +122,6 @@ class Search {
     for (int of_groups = groupsOf(groups) - 1; of_groups >= 0; --of_groups) {
       descend(of_groups, groups, bounds_.group_lowered_m.data(), bounds_.group_tx_slope.data(),
               posts_.group_first_m, posts_.group_last_m, clipped, boundOf, most, visitGroup);
-    }
-  }
-
-  /// Finds the largest slope from the transmitter.
-  /// @param slopeOf(range_m, height_m)  of an obstacle
-  /// @param most                        as above
-  template <class SlopeOf>
-  void findSteepest(const SlopeOf& slopeOf, Maximum& most) const {
-    const int guess = std::min(most.block, path_.blocks - 1);
-    visit(guess, slopeOf, most);
-    for (int block = path_.blocks - 1; block >= 0 && bounds_.highest_tx_slope[block] > most.value;
-         block = bounds_.steep_before[block]) {
-      if (block != guess && bounds_.tx_slope[block] > most.value) visit(block, slopeOf, most);
     }
   }
 
@@ -162,9 +152,10 @@ class Search {
 
   template <class ValueOf>
   void visit(int block, const ValueOf& valueOf, Maximum& most) const {
-    const int first = block * kBlock, count = std::min(kBlock, path_.before + 1 - first);
-    const float* const height_m = heightsOf(block);
-    const float* const range_m = posts_.range_m + first;
+    read(block);
+    const float *const range_m = memory_.range_m.data() + block * kOfBlock, *const height_m =
+                                                                                memory_.height_m.data() +
+                                                                                block * kOfBlock;
     const auto largestOf = [&](int begin, int end) {
       float largest = -HUGE_VALF;
 #pragma omp simd reduction(max : largest)
@@ -174,17 +165,17 @@ class Search {
       }
       return largest;
     };
-    const bool is_whole = first > 0 && count == kBlock;  // vectors of a known size
-    const float largest = is_whole ? largestOf(0, kBlock) : largestOf(first == 0 ? 1 : 0, count);
+    float largest = largestOf(0, kCrossings);
+    if (block * kBlock < posts_.near_count) largest = std::max(largest, largestOf(kCrossings, kOfBlock));
     if (largest > most.value) most = {largest, block};
   }
 
-  /// Posts of a block, relative to the base.
-  const float* heightsOf(int block) const {
-    const int first = block * kBlock;
-    float* const height_m = memory_.height_m.data() + first;
-    if (memory_.read_for[block] == path_.number) return height_m;
+  /// Reads the posts of a block. Its part of the path is straight, within 0.1 mm, and unused places are below
+  /// everything.
+  void read(int block) const {
+    if (memory_.read_for[block] == path_.number) return;
     memory_.read_for[block] = path_.number;
+    const SectorPosts& of_sectors = *posts_.of_sectors;
     const SectorChord& chord = terrain_.chordOf(block);
     const auto at = [s = path_.aside](const Parabola<float>* of) {
       Parabola<float> here;
@@ -192,26 +183,56 @@ class Search {
       return here;
     };
     const Parabola<float> column = at(chord.column), row = at(chord.row);
+    const float first_m = posts_.first_m[block];
+    const float length_m = std::min(posts_.last_m[block], path_.last_m) - first_m;
+    const float first_part = of_sectors.firstPart()[block];
+    const float last_part = first_part + (of_sectors.lastPart()[block] - first_part) * length_m /
+                                             (posts_.last_m[block] - first_m);
+    float *const range_m = memory_.range_m.data() + block * kOfBlock, *const height_m =
+                                                                          memory_.height_m.data() +
+                                                                          block * kOfBlock;
     const float* const corner = chord.corner_msl_m;
-    const float* const parts = posts_.part + first;
     const int row_posts = terrain_.rowPosts();
     const float base_msl_m = bounds_.base_msl_m;
-    const int count = std::min(kBlock, path_.before + 1 - first);
-    const auto read = [&](int end) {
+    // Chords meet within rounding: the first block of one begins a little earlier.
+    const float overlap = block > 0 && block % of_sectors.blocksPerChord() == 0 ? 1e-4f : 0;
+    const auto cross = [=](const Parabola<float>& to_line, const Parabola<float>& along, int line_step,
+                           int along_step, float* ranges, float* heights) {
+      const float begin = to_line.at(first_part), end = to_line.at(last_part);
+      const float along_begin = along.at(first_part), along_length = along.at(last_part) - along_begin;
+      const bool rises = end > begin;
+      const int first = static_cast<int>(rises ? begin - overlap : begin + overlap);
+      const int last = static_cast<int>(end);
+      const int count = rises ? last - first : first - last, step = rises ? 1 : -1;
+      const float per_length = count > 0 ? 1 / (end - begin) : 0;
 #pragma omp simd
-      for (int i = 0; i < end; ++i) {
-        height_m[i] = bilinearHeight(corner, row_posts, column.at(parts[i]), row.at(parts[i])) - base_msl_m;
+      for (int n = 0; n < kLines; ++n) {
+        const int line = n < count ? first + (rises ? 1 : 0) + step * n : first;
+        const float to = (static_cast<float>(line) - begin) * per_length;
+        const float part = to > 0 ? (to < 1 ? to : 1.0f) : 0.0f;
+        const float position = along_begin + part * along_length;
+        const int cell = static_cast<int>(position);
+        const int post = line * line_step + cell * along_step;
+        const float here = lerp(corner[post], corner[post + along_step], position - static_cast<float>(cell));
+        ranges[n] = first_m + part * length_m;
+        heights[n] = n < count ? here - base_msl_m : -HUGE_VALF;
       }
     };
-    if (count == kBlock) {
-      read(kBlock);
-    } else {
-      read(count);
+    cross(column, row, 1, row_posts, range_m, height_m);
+    cross(row, column, row_posts, 1, range_m + kLines, height_m + kLines);
+    const int first_post = block * kBlock;
+    for (int i = 0; first_post < posts_.near_count && i < kBlock; ++i) {
+      const int post = first_post + i;
+      const bool is_read = post > 0 && post < posts_.near_count && post <= path_.before;
+      const float part = of_sectors.part()[is_read ? post : 0];
+      const float here = bilinearHeight(corner, row_posts, column.at(part), row.at(part)) - base_msl_m;
+      range_m[kCrossings + i] = is_read ? of_sectors.range_m()[post] : first_m;
+      height_m[kCrossings + i] = is_read ? here : -HUGE_VALF;
     }
     if (!(terrain_.slack_m()[block] < HUGE_VALF)) {
+      const int count = first_post < posts_.near_count ? kOfBlock : kCrossings;
       for (int i = 0; i < count; ++i) memory_.is_unknown = memory_.is_unknown || std::isnan(height_m[i]);
     }
-    return height_m;
   }
 
   const Posts& posts_;
@@ -235,8 +256,9 @@ inline void findEdges(const Posts& posts, const SectorBounds& bounds, const Path
     const float rx = rx_m[n], slope = (rx - tx_m) / d;
     if (!is_found && steepest + bulge >= slope) {
       Maximum most{-HUGE_VALF, memory.tx_block};
-      search.findSteepest(
-          [=](float range, float height) { return (height - k * range * range - tx_m) * (1 / range); }, most);
+      search([](float, float tx_slope, float, float) { return tx_slope; },
+             [=](float range, float height) { return (height - k * range * range - tx_m) * (1 / range); },
+             most);
       memory.tx_block = most.block;
       steepest = most.value;
       is_found = true;
@@ -286,32 +308,31 @@ EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terr
   bounds.base_msl_m = base;
   bounds.tx_m = tx;
   const int blocks = terrain.blocks(), groups = groupsOf(blocks);
-  float least[kGroup];
-  float max_slope = -HUGE_VALF, min_slope = -HUGE_VALF;  // bounds of the largest slope so far
-  int steep = -1;  // the last block that may hold the largest slope so far
+  float max_slope = -HUGE_VALF;  // the largest so far
   for (int g = 0; g < groups; ++g) {
     const int begin = g * kGroup;
     const float* const slack_m = terrain.slack_m() + begin;
     float *const lowered = bounds.lowered_m.data() + begin, *const steepest = bounds.tx_slope.data() + begin;
 #pragma omp simd
-    for (int n = 0; n < kGroup; ++n) lowered[n] = steepest[n] = least[n] = -HUGE_VALF;
+    for (int n = 0; n < kGroup; ++n) lowered[n] = steepest[n] = -HUGE_VALF;
     for (int j = 0; j < kBlock; ++j) {
       const int first = (g * kBlock + j) * kGroup;
       const float* const height_msl_m = terrain.height_msl_m() + first;
-      const float *const lowering_m = posts.lowering_m + first, *const per_range = posts.per_range + first;
+      const float* const lowering_m = posts.lowering_m + first;
+      const float *const per_nearest = posts.per_nearest + first, *const per_farthest =
+                                                                      posts.per_farthest + first;
 #pragma omp simd
       for (int n = 0; n < kGroup; ++n) {
-        const float here = height_msl_m[n] - base - lowering_m[n];
-        const float slope = (here - tx) * per_range[n], between = slack_m[n] * per_range[n];
+        const float here = height_msl_m[n] - base - lowering_m[n] + slack_m[n];
+        const float above = here - tx, slope = above * (above > 0 ? per_nearest[n] : per_farthest[n]);
         lowered[n] = here > lowered[n] ? here : lowered[n];
-        steepest[n] = slope + between > steepest[n] ? slope + between : steepest[n];
-        least[n] = slope - between > least[n] ? slope - between : least[n];
+        steepest[n] = slope > steepest[n] ? slope : steepest[n];
       }
     }
     float group_lowered = -HUGE_VALF, group_steepest = -HUGE_VALF;
     const int count = std::min(kGroup, blocks - begin);
     for (int n = 0; n < kGroup; ++n) {
-      lowered[n] = n < count ? lowered[n] + slack_m[n] : -HUGE_VALF;
+      lowered[n] = n < count ? lowered[n] : -HUGE_VALF;
       steepest[n] = n < count ? steepest[n] : -HUGE_VALF;
       group_lowered = std::max(group_lowered, lowered[n]);
       group_steepest = std::max(group_steepest, steepest[n]);
@@ -319,13 +340,8 @@ EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terr
     bounds.group_lowered_m[g] = group_lowered;
     bounds.group_tx_slope[g] = group_steepest;
     for (int n = 0; n < count; ++n) {
-      const int block = begin + n;
-      while (steep >= 0 && bounds.tx_slope[steep] < min_slope) steep = bounds.steep_before[steep];
-      bounds.steep_before[block] = steep;
-      steep = block;
       max_slope = std::max(max_slope, steepest[n]);
-      min_slope = std::max(min_slope, least[n]);
-      bounds.highest_tx_slope[block] = max_slope;
+      bounds.highest_tx_slope[begin + n] = max_slope;
     }
   }
   for (int g = groups; g < groupsOf(groups) * kGroup; ++g) {
@@ -350,7 +366,7 @@ void setTrend(const Posts& posts, const SectorTerrain& terrain, const SectorBoun
     before_m = range_m;
     height_before_m = height_m;
     if (post % kBlock != 0) continue;
-    const int beyond = std::min(post + kBlock, posts.count - 1);
+    const int beyond = std::min(post + kBlock, posts.of_sectors->count() - 1);
     const double length_m = posts.exact_range_m[beyond] - posts.exact_range_m[std::max(post - 1, 0)];
     differences_m2 += 2 * length_m * static_cast<double>(terrain.slack_m()[post / kBlock]);
     trend.before.push_back(sums);
@@ -454,10 +470,12 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
   for (const SectorPath* to = sector.begin; to < sector.end; ++to) {
     path.distance_m = static_cast<float>(to->distance_m);
     path.before = sector.task.ground.lastBefore(to->distance_m);
-    path.blocks = path.before / kBlock + 1;
+    path.last_m = path.distance_m * (1 - 3e-7f);
     path.aside = to->aside_rad * per_rad;
     ++path.number;
-    if (path.before < kMinPosts || path.before >= terrain.posts()) continue;
+    if (path.before < kMinPosts || path.before + 1 >= terrain.posts()) continue;
+    const bool is_beyond = path.last_m > posts.of_sectors->farthest_m()[path.before];
+    path.blocks = (path.before + (is_beyond ? 1 : 0)) / kBlock + 1;
     const float ground_m = to->ground_msl_m - bounds.base_msl_m;
     for (int n = 0; n < grid.layers; ++n) {
       const auto height_msl_m = static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n]));
@@ -511,28 +529,27 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
   const int padded_groups = groupsOf(groups) * kGroup;
   group_first_m.resize(padded_groups, group_first_m.back());
   group_last_m.resize(padded_groups, group_last_m.back());
-  std::vector<float> lowering_m, per_range;
+  std::vector<float> lowering_m, per_nearest, per_farthest;
   for (const int post : sector_posts.postsInGroups()) {
-    const float range_m = sector_posts.range_m()[post];
-    lowering_m.push_back(task.model.model.half_curvature * range_m * range_m);
-    per_range.push_back(1 / range_m);
+    const float nearest_m = sector_posts.nearest_m()[post];
+    lowering_m.push_back(task.model.model.half_curvature * nearest_m * nearest_m);
+    per_nearest.push_back(1 / nearest_m);
+    per_farthest.push_back(1 / sector_posts.farthest_m()[post]);
   }
-  const int count = task.ground.range_count;
-  const Posts posts{
-      task.model.model, task.ground.ranges_m, sector_posts.range_m(), sector_posts.part(), count,
-      first_m.data(),   last_m.data(),        group_first_m.data(),   group_last_m.data(), lowering_m.data(),
-      per_range.data()};
+  const Posts posts{task.model.model,  task.ground.ranges_m, &sector_posts,        task.ground.near_count,
+                    first_m.data(),    last_m.data(),        group_first_m.data(), group_last_m.data(),
+                    lowering_m.data(), per_nearest.data(),   per_farthest.data()};
   parallelFor(sectors.count(), 16, [&](int begin, int end) {
     SectorTerrain terrain(task.station, task.ground, bounds, sector_posts);
     SectorBounds of_sector;
     for (auto* const array : {&of_sector.lowered_m, &of_sector.tx_slope, &of_sector.highest_tx_slope}) {
       array->resize(groups * kGroup);
     }
-    of_sector.steep_before.resize(groups * kGroup);
     of_sector.group_lowered_m.resize(padded_groups);
     of_sector.group_tx_slope.resize(padded_groups);
     PathMemory memory;
-    memory.height_m.resize(blocks * kBlock);
+    memory.range_m.resize(blocks * kOfBlock);
+    memory.height_m.resize(blocks * kOfBlock);
     memory.rx_m.resize(task.grid.layers);
     memory.rx_block.resize(task.grid.layers);
     memory.nu_block.resize(task.grid.layers);
@@ -543,7 +560,7 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
       }
       if (farthest_m == 0) continue;
       terrain.read(sectors.middle(sector), sectors.halfWidth_rad(sector),
-                   task.ground.lastBefore(farthest_m) + 1);
+                   std::min(task.ground.lastBefore(farthest_m) + 2, task.ground.range_count));
       if (terrain.blocks() == 0) continue;
       setBounds(posts, terrain, task.model.tx_msl_m, of_sector);
       memory.read_for.assign(blocks, 0);

@@ -2,10 +2,11 @@
 ///
 /// Between four posts the ground is bilinear: along a path it is smooth in a cell, and its crests are on the
 /// lines between the posts. The posts of a path with such a profile are, in the order of their ranges:
-/// - the emitter,
-/// - the first GroundPosts::near_count regular posts, which are in the emitter's own cell,
-/// - of each chord in the finest raster without a void on it: its beginning and its crossings; of other
-///   chords its beginning and the regular posts on it.
+/// - of each chord in the finest raster without a void on it, if they are not too many
+///   (GroundPosts::maxCrossings): its beginning and its crossings; of other chords its beginning and the
+///   regular posts on it,
+/// - among the first chord's crossings the first GroundPosts::near_count regular posts: in the emitter's own
+///   cell a hump between the lines masks a large angle.
 /// The posts are farther than the emitter and nearer than the receivers: see crossingRange_m().
 #pragma once
 
@@ -23,6 +24,7 @@ struct LineCrossings {
   float to_root = 1;           ///< 1 where the coordinate rises at first, else -1
   float turn = 2;              ///< part at which the chord turns; beyond 1: it does not
   int first_cell = 0, last_cell = 0, turn_cell = 0;
+  int step = 1;         ///< from one line to the next before the turn
   int before_turn = 0;  ///< crossings before the turn
   int count = 0;
 
@@ -30,6 +32,7 @@ struct LineCrossings {
     const float* const c = of.c;
     const float slope_at_end = c[1] + 2 * c[2];
     to_root = c[1] > 0 || (c[1] == 0 && c[2] > 0) ? 1.0f : -1.0f;
+    step = to_root > 0 ? 1 : -1;
     if (c[1] * slope_at_end < 0) turn = -c[1] / (2 * c[2]);
     first_cell = cellOf(0);
     last_cell = cellOf(1);
@@ -40,24 +43,15 @@ struct LineCrossings {
 
   /// The line of crossing n, 0 <= n < count.
   EMSCAPE_HD int line(int n) const {
-    const bool is_first = n < before_turn, rises = (to_root > 0) == is_first;
-    const int from = is_first ? first_cell : turn_cell, step = is_first ? n : n - before_turn;
-    return rises ? from + 1 + step : from - step;
+    const int first = first_cell + (step > 0 ? 1 : 0), after = turn_cell + (step > 0 ? 0 : 1);
+    return n < before_turn ? first + step * n : after - step * (n - before_turn);
   }
   /// The part of the chord at which crossing n is: 0..1.
   EMSCAPE_HD float part(int n, int line) const {
     const float* const c = coordinate.c;
     const float to_line = static_cast<float>(line) - c[0], square = c[1] * c[1] + 4 * c[2] * to_line;
-    const bool is_first = n < before_turn;
-#ifdef __CUDA_ARCH__  // within 2e-7 of the part
-    float root;
-    asm("sqrt.approx.f32 %0, %1;" : "=f"(root) : "f"(square > 0 ? square : 0.0f));
-    const float sum = c[1] + to_root * root;
-    const float part = __fdividef(is_first ? 2 * to_line : -sum, is_first ? sum : 2 * c[2]);
-#else
     const float sum = c[1] + to_root * std::sqrt(square > 0 ? square : 0.0f);
-    const float part = (is_first ? 2 * to_line : -sum) / (is_first ? sum : 2 * c[2]);
-#endif
+    const float part = (n < before_turn ? 2 * to_line : -sum) / (n < before_turn ? sum : 2 * c[2]);
     return part > 0 ? (part < 1 ? part : 1.0f) : 0.0f;
   }
   /// Number of crossings before a part of the chord, at which the coordinate is in a cell: 0..count. That of
@@ -110,9 +104,9 @@ struct ChordCrossings {
     const int j = rows.line(n);
     const float part = rows.part(n, j), x = columns.coordinate.at(part);
     const int i = static_cast<int>(x);
-    const FloatPair posts = floatPair(corner_msl_m + (j * row_posts + i));
-    return {part, lerp(posts.first, posts.second, x - static_cast<float>(i)),
-            1 + n + columns.countBefore(part, i)};
+    const int at = j * row_posts + i;
+    const float west = corner_msl_m[at], east = corner_msl_m[at + 1];
+    return {part, lerp(west, east, x - static_cast<float>(i)), 1 + n + columns.countBefore(part, i)};
   }
 };
 

@@ -26,8 +26,8 @@ GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<doub
   ground.ranges_m = ranges_m.data();
   ground.range_count = static_cast<int>(ranges_m.size());
   if (terrain != nullptr) {
-    constexpr double kOwnCell = 1.5, kMaxPerPost = 4;  // posts of the terrain
-    const double near_m = kOwnCell * terrain->postSpacing_m();
+    constexpr double kNear = 3, kMaxPerPost = 4;  // spacings of the terrain
+    const double near_m = kNear * terrain->postSpacing_m();
     ground.near_count =
         static_cast<int>(std::lower_bound(ranges_m.begin(), ranges_m.end(), near_m) - ranges_m.begin());
     ground.crossings_per_m = kMaxPerPost / terrain->postSpacing_m();

@@ -1,7 +1,9 @@
 /// Terrain profiles from an emitter to the columns: the posts at which they read the ground.
 ///
-/// The spacing is half that of the elevation model, smaller near the emitter, and independent of the grid.
-/// The field, the jammers' paths and the budget of a single path use the same posts.
+/// The spacing of regular posts is half that of the elevation model, smaller near the emitter, and
+/// independent of the grid. Profiles of delta-Bullington have posts where the path crosses the lines between
+/// the posts of the elevation model: chord_crossings.h. The field, the jammers' paths and the budget of a
+/// single path use the same posts.
 #pragma once
 
 #include <vector>
@@ -55,6 +57,15 @@ struct GroundPosts {
   }
 };
 
+/// Largest number of posts of a profile within the ranges of regular posts, with one at the receivers.
+EMSCAPE_HD inline int maxPosts(const Station& station, const GroundPosts& ground, bool at_crossings) {
+  const int regular = ground.range_count + 1;
+  if (!at_crossings || ground.is_smooth) return regular;
+  const double farthest_m = ground.ranges_m[ground.range_count - 1];
+  const double chords = 1 + farthest_m / maxChord_m(std::fabs(station.geodesy.station.up.z));
+  return regular + ground.maxCrossings(farthest_m) + static_cast<int>(chords) * (ground.maxCrossings(0) + 2);
+}
+
 /// The ground below an emitter's paths, in host memory. Pointers are valid as long as both arguments.
 GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<double>& ranges_m);
 
@@ -96,11 +107,17 @@ EMSCAPE_HD void visitPosts(const Station& station, const GroundPosts& ground, co
   }
 }
 
-/// Reads the heights of the first `count` posts toward a point. Host and device.
+/// Reads the regular posts that are nearer than a point. Host and device.
 struct PostReader {
-  EMSCAPE_HD void operator()(const Station& station, const GroundPosts& ground, const FastInverse& path,
-                             int count, float* height_msl_m) const {
-    visitPosts(station, ground, path, count, [&](int i, float here) { height_msl_m[i] = here; });
+  /// @return their number, with the emitter's
+  EMSCAPE_HD int operator()(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                            double* range_m, float* height_msl_m) const {
+    const int count = ground.lastBefore(path.distance_m) + 1;
+    visitPosts(station, ground, path, count, [&](int i, float here) {
+      range_m[i] = ground.ranges_m[i];
+      height_msl_m[i] = here;
+    });
+    return count;
   }
 };
 
@@ -153,14 +170,10 @@ template <class Reader>
 EMSCAPE_HD TerrainProfile readProfile(const Station& station, const GroundPosts& ground,
                                       const FastInverse& point, float ground_msl_m,
                                       const ExcessScratch& scratch, const Reader& read) {
-  const double range_m = point.distance_m;
-  const bool is_beyond_first = range_m > 0;
-  const int before = ground.lastBefore(range_m);
-  read(station, ground, point, before + 1, scratch.ground_msl_m);
-  for (int i = 0; i <= before; ++i) scratch.range_m[i] = ground.ranges_m[i];
-  const int last = is_beyond_first ? before + 1 : 0;
-  if (is_beyond_first) {
-    scratch.range_m[last] = range_m;
+  const int nearer = read(station, ground, point, scratch.range_m, scratch.ground_msl_m);
+  const int last = point.distance_m > 0 ? nearer : 0;
+  if (last > 0) {
+    scratch.range_m[last] = point.distance_m;
     scratch.ground_msl_m[last] = ground_msl_m;
   }
   TerrainProfile profile{scratch.range_m, scratch.ground_msl_m, last + 1};

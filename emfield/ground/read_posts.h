@@ -6,9 +6,15 @@
 
 namespace emscape::emfield {
 
-/// PostReader of the CPU.
+/// Heights of the first `count` regular posts toward a point.
 void readPostsCpu(const Station& station, const GroundPosts& ground, const FastInverse& path, int count,
                   float* height_msl_m);
+/// Reads the posts of a profile that are nearer than a point.
+/// @param at_crossings  false: regular posts; true: see chord_crossings.h
+/// @param range_m, height_msl_m  maxPosts() elements each
+/// @return their number, with the emitter's
+int readProfileCpu(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                   bool at_crossings, double* range_m, float* height_msl_m);
 
 /// propagation::GrazingSlope of samples.
 /// @param terms  of the samples' ranges

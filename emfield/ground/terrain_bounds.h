@@ -14,7 +14,7 @@ class TerrainBounds {
  public:
   static constexpr int kStride = 4;
   /// Largest extent (posts, in rows and in columns) of a part of the ground.
-  static constexpr float kMaxExtent = 11;
+  static constexpr float kMaxExtent = 7;
 
   explicit TerrainBounds(const scenario::TerrainView& terrain);
 

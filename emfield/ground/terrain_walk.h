@@ -148,7 +148,6 @@ class TerrainWalk {
     }
     return chord_;
   }
-  EMSCAPE_HD const TerrainChord& current() const { return chord_; }
   /// Range at which the chord of a range ends; infinity for the last chord.
   EMSCAPE_HD double endOfChord_m(double range_m) const {
     const int index = indexOf(range_m);

@@ -18,6 +18,7 @@
 #include "emfield/radar/receiver.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/solver/field_solver.h"
+#include "propagation/registry/model_info.h"
 #include "scenario/file/quantity_needs.h"
 
 namespace emscape::emfield {
@@ -321,9 +322,11 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   budget.k_factor = scenario.atmosphere.k_factor;
   budget.model = model;
   const PathEnd begin{state.position, state.height_msl_m};
-  const bool is_still =
-      earlier != nullptr && isAt(earlier->profile.begin, begin) && isAt(earlier->profile.end, point);
-  budget.profile = is_still ? earlier->profile : readPathProfile(begin, point, scenario.atmosphere, terrain);
+  const bool at_crossings = propagation::readsCrossings(by_model.propagation);
+  const bool is_still = earlier != nullptr && earlier->profile.at_crossings == at_crossings &&
+                        isAt(earlier->profile.begin, begin) && isAt(earlier->profile.end, point);
+  budget.profile =
+      is_still ? earlier->profile : readPathProfile(begin, point, scenario.atmosphere, terrain, at_crossings);
   const PathProfile& profile = budget.profile;
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
   const double wavelength = wavelength_m(emitter.frequency_hz);

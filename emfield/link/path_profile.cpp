@@ -14,14 +14,6 @@
 namespace emscape::emfield {
 namespace {
 
-/// Ranges of the posts before the path's end, and the end.
-std::vector<double> pathRanges(double range_m, double post_spacing_m) {
-  std::vector<double> ranges = postRanges(range_m, post_spacing_m);
-  while (ranges.back() >= range_m) ranges.pop_back();
-  ranges.push_back(range_m);
-  return ranges;
-}
-
 void checkTerrain(const PathProfile& profile, const scenario::Terrain& terrain) {
   const auto hole = std::find_if(profile.ground_msl_m.begin(), profile.ground_msl_m.end(),
                                  [](float height_m) { return std::isnan(height_m); });
@@ -62,20 +54,22 @@ double PathProfile::fresnelRadius_m(int i, double wavelength_m) const {
 }
 
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
-                            const scenario::Terrain* terrain) {
+                            const scenario::Terrain* terrain, bool at_crossings) {
   propagation::Atmosphere atmosphere;
   atmosphere.k_factor = k_factor;
-  return readPathProfile(begin, end, atmosphere, terrain);
+  return readPathProfile(begin, end, atmosphere, terrain, at_crossings);
 }
 
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
-                            const propagation::Atmosphere& atmosphere, const scenario::Terrain* terrain) {
+                            const propagation::Atmosphere& atmosphere, const scenario::Terrain* terrain,
+                            bool at_crossings) {
   PathProfile profile;
   const Station station = makeStation(begin.position, begin.height_msl_m, atmosphere);
   profile.k_factor = atmosphere.k_factor;
   profile.effective_earth_radius_m = station.effective_earth_radius_m;
   profile.begin = begin;
   profile.end = end;
+  profile.at_crossings = at_crossings;
   profile.has_terrain = terrain != nullptr;
   const FastInverse inverse = fastInverse(
       station.geodesy, surfacePoint(end.position.latitude_deg, end.position.longitude_deg).ecef_m);
@@ -89,10 +83,16 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
         fmt::format("the path is {:.6g} km long over the ground; profiles are drawn from {:g} to {:.0f} km",
                     profile.range_m / 1000, kMinPath_m / 1000, longest_m / 1000));
   }
-  profile.ranges_m = pathRanges(profile.range_m, postSpacing_m(terrain));
-  profile.ground_msl_m.resize(profile.ranges_m.size());
-  readPostsCpu(station, groundPosts(terrain, profile.ranges_m), inverse, profile.count() - 1,
-               profile.ground_msl_m.data());
+  const std::vector<double> regular_m = postRanges(profile.range_m, postSpacing_m(terrain));
+  const GroundPosts ground = groundPosts(terrain, regular_m);
+  const auto most = static_cast<std::size_t>(maxPosts(station, ground, at_crossings));
+  profile.ranges_m.resize(most);
+  profile.ground_msl_m.resize(most);
+  const auto nearer = static_cast<std::size_t>(readProfileCpu(
+      station, ground, inverse, at_crossings, profile.ranges_m.data(), profile.ground_msl_m.data()));
+  profile.ranges_m.resize(nearer);
+  profile.ranges_m.push_back(profile.range_m);
+  profile.ground_msl_m.resize(nearer + 1, 0.0f);
   if (terrain != nullptr) {
     profile.ground_msl_m.back() =
         static_cast<float>(terrain->heightMsl_m(end.position.latitude_deg, end.position.longitude_deg));

@@ -11,6 +11,7 @@ struct DiffractionExcess {
   static constexpr bool kNeedsTerrain = true;
   static constexpr bool kOnEffectiveEarth = true;
   static constexpr bool kInParts = false;
+  static constexpr bool kReadsCrossings = true;
 
   DiffractionModel<float> model;
   float tx_msl_m = 0;

@@ -15,6 +15,9 @@
 /// for one voxel, which returns the ray and the excess between isotropic antennas. A model whose row says
 /// on_effective_earth has
 ///     static constexpr bool kOnEffectiveEarth = true;
+/// A model whose profiles have posts where the path crosses the lines between the posts of the elevation
+/// model (readsCrossings() in model_info.h) has
+///     static constexpr bool kReadsCrossings = true;
 /// A model whose row names several mechanisms has
 ///     static constexpr bool kHasMechanisms = true;
 /// and a last parameter (const MechanismStore&), which receives the mechanism of each height; also for
@@ -50,6 +53,12 @@ template <class Model, class = void>
 struct OnEffectiveEarth : std::false_type {};
 template <class Model>
 struct OnEffectiveEarth<Model, std::void_t<decltype(Model::kOnEffectiveEarth)>> : std::true_type {};
+
+/// True for models whose profiles have posts at crossings.
+template <class Model, class = void>
+struct ReadsCrossings : std::false_type {};
+template <class Model>
+struct ReadsCrossings<Model, std::void_t<decltype(Model::kReadsCrossings)>> : std::true_type {};
 
 /// True for models with several mechanisms.
 template <class Model, class = void>

@@ -109,6 +109,9 @@ bool hasTerminalClutter(const EmitterInputs& inputs);
 /// True for models whose profiles are raised by the clutter of the land cover: their terrain is the surface
 /// that waves meet. p1812 and p452 read the clutter themselves.
 bool isRaisedByClutter(const ModelSettings& settings);
+/// True for models whose profiles have posts where the path crosses the lines between the posts of the
+/// elevation model: ReadsCrossings in excess_model.h.
+bool readsCrossings(const ModelSettings& settings);
 /// True if the paths have an excess loss, from the model, the atmosphere or clutter.
 bool hasExcess(const EmitterInputs& inputs);
 /// True if PathInputs::extent is read.

@@ -263,6 +263,11 @@ bool isRaisedByClutter(const ModelSettings& settings) {
          (settings.model == PropagationModel::itm && settings.itm.form == ItmForm::point_to_point);
 }
 
+bool readsCrossings(const ModelSettings& settings) {
+  return settings.model == PropagationModel::diffraction &&
+         settings.diffraction.method == DiffractionMethod::delta_bullington;
+}
+
 bool hasExcess(const EmitterInputs& inputs) {
   const ModelInfo& row = modelInfo(inputs.settings.model);
   return row.excess != nullptr || row.radial != nullptr || hasAirLoss(inputs) || hasTerminalClutter(inputs);

@@ -8,8 +8,17 @@
 #include <random>
 #include <vector>
 
+#include "emfield/ground/read_posts.h"
+#include "emscape/base/error.h"
+#include "emscape/base/geodesy/geoid.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/link/path_profile.h"
+#include "tests/emfield/made_terrain.h"
+
 namespace emscape::emfield {
 namespace {
+
+using testing::MadeTerrain;
 
 constexpr int kRows = 60, kColumns = 70;
 
@@ -133,6 +142,124 @@ TEST(ChordCrossings, AlongADiagonalOfPostsAreHarmless) {
       EXPECT_NEAR(crossing.height_msl_m, heights[post], 0.1f);
     }
   }
+}
+
+/// Random paths around the middle of a terrain, with both ends 20 m above the ground.
+struct RandomPath {
+  PathEnd begin, end;
+};
+std::vector<RandomPath> randomPaths(const scenario::Terrain& terrain, double half_side_deg, int count) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> within(-half_side_deg, half_side_deg);
+  const auto any = [&] {
+    GeodeticPosition at{44.5 + within(random), -71.5 + within(random), 0};
+    const double height_msl_m = terrain.heightMsl_m(at.latitude_deg, at.longitude_deg) + 20;
+    at.height_ellipsoid_m = height_msl_m + geoidUndulation_m(at.latitude_deg, at.longitude_deg);
+    return PathEnd{at, height_msl_m};
+  };
+  std::vector<RandomPath> paths;
+  for (int n = 0; n < count; ++n) paths.push_back({any(), any()});
+  return paths;
+}
+
+PathProfile profileOf(const scenario::Terrain& terrain, const RandomPath& path, bool at_crossings) {
+  return readPathProfile(path.begin, path.end, 4.0 / 3, &terrain, at_crossings);
+}
+
+TEST(ProfileAtCrossings, NeverMissesACrestOnALineBetweenPosts) {
+  // Walls one post wide along a meridian and along a parallel.
+  constexpr double kWall_deg = 0.25, kPost_deg = 1.0 / 1200;
+  const auto isOnWall = [](double at_deg) { return std::abs(at_deg - kWall_deg) < kPost_deg / 2; };
+  const MadeTerrain terrain(44.5, -71.5, 0.5, [&](double east_deg, double north_deg) {
+    return isOnWall(east_deg) || isOnWall(north_deg) ? 60.0 : 0.0;
+  });
+  int crossed = 0, missed_by_regular = 0;
+  for (const RandomPath& path : randomPaths(terrain, 0.2, 100)) {
+    const double east = (path.begin.position.longitude_deg + 71.5) * (path.end.position.longitude_deg + 71.5);
+    const double north = (path.begin.position.latitude_deg - 44.5) * (path.end.position.latitude_deg - 44.5);
+    if (!(std::min(east, north) < -1e-4)) continue;
+    ++crossed;
+    const auto highestOf = [&](bool at_crossings) {
+      const PathProfile profile = profileOf(terrain, path, at_crossings);
+      return *std::max_element(profile.ground_msl_m.begin(), profile.ground_msl_m.end());
+    };
+    EXPECT_NEAR(highestOf(true), 60, 0.1);
+    missed_by_regular += highestOf(false) < 59;
+  }
+  EXPECT_GT(crossed, 40);
+  EXPECT_GT(missed_by_regular, crossed / 2);
+}
+
+TEST(ProfileAtCrossings, IsInOrderBetweenItsEndsAndFitsItsMemory) {
+  const MadeTerrain terrain(44.5, -71.5, 1.0);
+  for (const RandomPath& path : randomPaths(terrain, 0.45, 200)) {
+    const PathProfile profile = profileOf(terrain, path, true);
+    const Station station = makeStation(path.begin.position, path.begin.height_msl_m, 4.0 / 3);
+    const std::vector<double> regular_m = postRanges(profile.range_m, terrain.postSpacing_m());
+    EXPECT_LE(profile.count(), maxPosts(station, groundPosts(&terrain, regular_m), true));
+    EXPECT_EQ(profile.ranges_m[0], 0);
+    for (int i = 1; i < profile.count(); ++i) {
+      ASSERT_GT(profile.ranges_m[i], 0);
+      ASSERT_GE(profile.ranges_m[i], profile.ranges_m[i - 1] - 0.01);
+      if (i + 1 < profile.count()) {
+        ASSERT_LT(static_cast<float>(profile.ranges_m[i]), static_cast<float>(profile.range_m));
+      }
+    }
+  }
+}
+
+TEST(ProfileAtCrossings, ReadsRegularPostsBesideAVoid) {
+  const MadeTerrain terrain(44.5, -71.5, 1.0, 0.1);
+  int unknown = 0;
+  for (const RandomPath& path : randomPaths(terrain, 0.45, 200)) {
+    if (std::isnan(path.begin.height_msl_m) || std::isnan(path.end.height_msl_m)) continue;
+    const auto isKnown = [&](bool at_crossings) {
+      try {
+        return profileOf(terrain, path, at_crossings).count() > 0;
+      } catch (const Error&) {
+        return false;
+      }
+    };
+    const bool is_known = isKnown(true);
+    unknown += !is_known;
+    EXPECT_EQ(is_known, isKnown(false));
+  }
+  EXPECT_GT(unknown, 10);
+}
+
+/// Height (m) above the end of a path at which its shadow ends, over posts at some ranges.
+double shadowEdge_m(const PathProfile& path, const std::vector<double>& ranges_m,
+                    const std::vector<double>& ground_msl_m) {
+  const double curvature = 0.5 / path.effective_earth_radius_m, tx_m = path.begin.height_msl_m;
+  double steepest = -HUGE_VAL;
+  for (std::size_t i = 0; i < ranges_m.size(); ++i) {
+    if (!(ranges_m[i] > 0 && ranges_m[i] < path.range_m)) continue;
+    steepest = std::max(steepest, (ground_msl_m[i] - tx_m) / ranges_m[i] - curvature * ranges_m[i]);
+  }
+  return tx_m + steepest * path.range_m + curvature * path.range_m * path.range_m;
+}
+
+TEST(ProfileAtCrossings, IsNearerToAFinelySampledPath) {
+  const MadeTerrain terrain(44.5, -71.5, 1.0);
+  std::vector<double> errors_m[2];
+  for (const RandomPath& path : randomPaths(terrain, 0.45, 60)) {
+    const PathProfile posts[2] = {profileOf(terrain, path, false), profileOf(terrain, path, true)};
+    std::vector<double> fine_m, fine_msl_m;
+    for (double range_m = 0; range_m < posts[0].range_m; range_m += terrain.postSpacing_m() / 20) {
+      const GeodeticPosition at = geodesicDirect(
+          path.begin.position.latitude_deg, path.begin.position.longitude_deg, posts[0].azimuth_rad, range_m);
+      fine_m.push_back(range_m);
+      fine_msl_m.push_back(terrain.heightMsl_m(at.latitude_deg, at.longitude_deg));
+    }
+    const double truth_m = shadowEdge_m(posts[0], fine_m, fine_msl_m);
+    for (const int n : {0, 1}) {
+      const std::vector<double> ground_msl_m(posts[n].ground_msl_m.begin(), posts[n].ground_msl_m.end());
+      errors_m[n].push_back(std::abs(shadowEdge_m(posts[n], posts[n].ranges_m, ground_msl_m) - truth_m));
+    }
+  }
+  for (std::vector<double>& errors : errors_m) std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors_m[1][30], errors_m[0][30] / 3);  // median
+  EXPECT_LT(errors_m[1][54], errors_m[0][54] / 3);  // 90 %
 }
 
 }  // namespace

@@ -201,7 +201,7 @@ TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
       const Vec3d center = volume->grid.center_m(i, j, k);
       const GeodeticPosition to = geo.toGeodetic(center);
       if (center.z < terrain->heightMsl_m(to.latitude_deg, to.longitude_deg) + 1) continue;
-      const ProfileData profile = profileTo(*terrain, state.position, to);
+      const ProfileData profile = profileTo(*terrain, state.position, to, false);
       const double expected = method == propagation::DiffractionMethod::deygout
                                   ? deygoutLossDb(model, profile.view(), state.height_msl_m, center.z)
                                   : singleEdgeLossDb(model, profile.view(), state.height_msl_m, center.z);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "emfield/excess/emitter_excess.h"
-#include "emfield/ground/ground_posts.h"
 #include "emscape/base/units.h"
+#include "emscape/emfield/link/path_profile.h"
 #include "tests/emfield/random_profile.h"
 #include "tests/emfield/test_scenario.h"
 
@@ -46,8 +46,9 @@ inline std::shared_ptr<scenario::Scenario> smoothEarth(propagation::PropagationM
 }
 
 /// The terrain along the geodesic from an emitter to below a point, at the field's posts.
+/// @param at_crossings  see readPathProfile()
 inline ProfileData profileTo(const scenario::Terrain& terrain, const GeodeticPosition& from,
-                             const GeodeticPosition& to) {
+                             const GeodeticPosition& to, bool at_crossings) {
   const GeodesicInverse path =
       geodesicInverse(from.latitude_deg, from.longitude_deg, to.latitude_deg, to.longitude_deg);
   ProfileData profile;
@@ -58,10 +59,8 @@ inline ProfileData profileTo(const scenario::Terrain& terrain, const GeodeticPos
     profile.height_msl_m.push_back(
         static_cast<float>(terrain.heightMsl_m(at.latitude_deg, at.longitude_deg)));
   };
-  for (const double range_m : postRanges(path.distance_m, postSpacing_m(&terrain))) {
-    if (range_m < path.distance_m) add(range_m);
-  }
-  add(path.distance_m);
+  const PathProfile posts = readPathProfile({from, 0}, {to, 0}, 4.0 / 3, &terrain, at_crossings);
+  for (const double range_m : posts.ranges_m) add(range_m);
   return profile;
 }
 

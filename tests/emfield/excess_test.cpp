@@ -58,7 +58,7 @@ TEST(Excess, DiffractionInTheFieldAgreesWithTheModelPathByPathOverRealTerrain) {
         const GeodeticPosition to = geo.toGeodetic(center);
         const double to_msl_m = geo.heightMsl_m(center);
         if (to_msl_m < terrain->heightMsl_m(to.latitude_deg, to.longitude_deg) + 1) continue;
-        const ProfileData profile = profileTo(*terrain, state.position, to);
+        const ProfileData profile = profileTo(*terrain, state.position, to, true);
         const double expected = deltaBullington(model, profile.view(), state.height_msl_m, to_msl_m).loss_db;
         spread.add(excessIn(*volume, i, j, k, state.position) - expected);
       }

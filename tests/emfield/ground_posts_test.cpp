@@ -89,7 +89,7 @@ TEST(GroundPosts, VectorLoopsReadHeightsOfTerrain) {
     const FastInverse path{60e3, std::sin(azimuth_rad), std::cos(azimuth_rad)};
     const int count = ground.lastBefore(path.distance_m) + 1;
     std::vector<float> plain(static_cast<std::size_t>(count)), vectors(plain);
-    PostReader{}(station, ground, path, count, plain.data());
+    visitPosts(station, ground, path, count, [&](int i, float here) { plain[std::size_t(i)] = here; });
     readPostsCpu(station, ground, path, count, vectors.data());
     propagation::GrazingSlope<float> slope;
     for (int i = 0; i < count; ++i) {
@@ -175,7 +175,7 @@ class FieldAtPosts : public test::OnBackends {
                            const GeodeticPosition& to) {
     try {
       return std::isnan(terrain.heightMsl_m(from.latitude_deg, from.longitude_deg)) ||
-             readPathProfile({from, 0}, {to, 0}, 1, &terrain).count() < 2;
+             readPathProfile({from, 0}, {to, 0}, 1, &terrain, true).count() < 2;
     } catch (const Error&) {
       return true;
     }

@@ -47,7 +47,7 @@ Measurement measure(const emfield::PathEnd& from, const emfield::PathEnd& to,
   result.path.frequency_hz = frequency_hz;
   result.path.k_factor = atmosphere.k_factor;
   if (result.distance_m >= kMinPath_m) {
-    result.path.profile = emfield::readPathProfile(from, to, atmosphere, terrain);
+    result.path.profile = emfield::readPathProfile(from, to, atmosphere, terrain, true);
     result.path.obstacles = emfield::pathObstacles(result.path.profile, wavelength_m(frequency_hz));
     result.is_blocked = emfield::isBlocked(result.path);
   }

@@ -26,6 +26,7 @@ struct PathProfile {
   std::vector<double> ranges_m;
   std::vector<float> ground_msl_m;
   std::vector<double> ray_msl_m;  ///< height of the ray between the ends
+  bool at_crossings = false;      ///< see readPathProfile()
   bool has_terrain = false;       ///< false: a smooth earth at mean sea level
 
   int count() const { return static_cast<int>(ranges_m.size()); }
@@ -40,14 +41,17 @@ struct PathProfile {
 };
 
 /// Reads the terrain along the path with the sampling of the field, and at the path's end.
-/// @param terrain  null: a smooth earth at mean sea level
+/// @param terrain       null: a smooth earth at mean sea level
+/// @param at_crossings  false: posts at half the spacing of the elevation model; true: where the path crosses
+/// the lines between its posts, as the model diffraction reads them
 /// @throws Error (bad_input) that names the first position without terrain, and for ends that are less than 1
 /// m apart along the ground, or more than a quarter of the earth's circumference
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
-                            const propagation::Atmosphere& atmosphere, const scenario::Terrain* terrain);
+                            const propagation::Atmosphere& atmosphere, const scenario::Terrain* terrain,
+                            bool at_crossings);
 /// The same in air whose refractivity is linear in height.
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
-                            const scenario::Terrain* terrain);
+                            const scenario::Terrain* terrain, bool at_crossings);
 
 /// A point where the ground enters the ray's first Fresnel zone, or is closest to it.
 struct PathObstacle {
