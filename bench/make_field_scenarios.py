@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Makes the scenarios of `emscape bench field` in docs/performance.md: sixteen radars, and one over 200 km.
+"""Makes the scenarios of `emscape bench field` in docs/performance.md: sixteen radars, a hundred, and one over 200 km.
 
     bench/make_field_scenarios.py FOLDER
 
 Writes FOLDER/radars_VARIANT.yaml (the region of scenarios/jacksboro.yaml at 200 x 200 x 100 voxels, sixteen radars spread over
-it; `enu` is diffraction over columns that lean) and FOLDER/wide_VARIANT.yaml (512 x 512 x 128 voxels over 200 km, one radar in
+it; `enu` is diffraction over columns that lean), FOLDER/hundred_VARIANT.yaml (a hundred radars over 40 km, every second one
+1500 m above the ground, the others on masts) and FOLDER/wide_VARIANT.yaml (512 x 512 x 128 voxels over 200 km, one radar in
 the middle) with FOLDER/wide.tif. Terrain: scenarios/data/jacksboro.tif (SRTM, public domain); wide.tif repeats it by reflection
 at its edges, as no public-domain data of that width is at hand. Needs python3-numpy and python3-gdal.
 """
@@ -54,7 +55,7 @@ ANTENNAS = [
 ]
 
 
-# name: propagation, frame, whether there is a wide one
+# name: propagation, frame, whether there are a wide one and one of a hundred radars
 VARIANTS = {
     "horizon": ("propagation: horizon", "altitude", True),
     "diffraction": ("propagation: diffraction", "altitude", True),
@@ -65,18 +66,25 @@ VARIANTS = {
 }
 
 
-def scenario(name, variant, places, size, dims, height, terrain):
+def scenario(name, variant, places, size, dims, height, terrain, heights_agl=(20,), step_ghz=0.3):
     propagation, frame, _ = VARIANTS[variant]
     text = HEAD.format(name=name, latitude=MIDDLE[0], longitude=MIDDLE[1], height=height, frame=frame, size=size,
                        dims=dims, terrain=terrain) + "platforms:\n"
     for n, (latitude, longitude) in enumerate(places):
         text += f"  - name: site {n}\n    position: {{latitude_deg: {latitude:.5f}, longitude_deg: {longitude:.5f}, " \
-                "height_agl_m: 20}\n"
+                f"height_agl_m: {heights_agl[n % len(heights_agl)]}}}\n"
     text += "emitters:\n"
     for n in range(len(places)):
-        text += EMITTER.format(n=n, frequency=(0.4 + 0.3 * n) * 1e9, antenna=ANTENNAS[n % len(ANTENNAS)],
+        text += EMITTER.format(n=n, frequency=(0.4 + step_ghz * n) * 1e9, antenna=ANTENNAS[n % len(ANTENNAS)],
                                azimuth=22.5 * n, propagation=propagation)
     return text
+
+
+def spread_over(count, latitude_deg, longitude_deg):
+    """Places in `count` rows and columns, up to these angles from the middle."""
+    half = (count - 1) / 2
+    return [(MIDDLE[0] + latitude_deg * (row - half) / half, MIDDLE[1] + longitude_deg * (column - half) / half)
+            for row in range(count) for column in range(count)]
 
 
 def write_wide_terrain(target):
@@ -108,12 +116,13 @@ def main():
     options.folder.mkdir(parents=True, exist_ok=True)
     write_wide_terrain(options.folder / "wide.tif")
     (options.folder / "jacksboro.tif").write_bytes(JACKSBORO.read_bytes())
-    spread = [(MIDDLE[0] + 0.1 * (row - 1.5) / 1.5, MIDDLE[1] + 0.12 * (column - 1.5) / 1.5)
-              for row in range(4) for column in range(4)]
     for variant, (_, _, has_wide) in VARIANTS.items():
         (options.folder / f"radars_{variant}.yaml").write_text(
-            scenario("sixteen radars", variant, spread, [29000, 29000, 6000], [200, 200, 100], 200, "jacksboro.tif"))
+            scenario("sixteen radars", variant, spread_over(4, 0.1, 0.12), [29000, 29000, 6000], [200, 200, 100], 200, "jacksboro.tif"))
         if has_wide:
+            (options.folder / f"hundred_{variant}.yaml").write_text(
+                scenario("a hundred radars", variant, spread_over(10, 0.17, 0.21), [40000, 40000, 6000], [200, 200, 100], 200,
+                         "wide.tif", heights_agl=(20, 1500), step_ghz=0.05))
             (options.folder / f"wide_{variant}.yaml").write_text(
                 scenario("two hundred kilometres", variant, [MIDDLE], [200000, 200000, 10000], [512, 512, 128], 200,
                          "wide.tif"))

@@ -19,14 +19,8 @@ using emscape::cuda::check;
 using emscape::cuda::downloadStaged;
 using emscape::cuda::uploadStaged;
 
-/// Up to this number of heights fillClear() is used, which reads each path once for every eight of them.
-/// Measured to ten heights.
-constexpr int kMostClearHeights = 32;
-
-/// True if the losses are those of the kernels of `diffraction`: over bare ground, without terminal clutter.
-bool isDiffraction(const EmitterExcess& excess, const scenario::Terrain* terrain) {
-  const bool is_raised = excess.is_raised && terrain != nullptr && terrain->view().hasCover();
-  return std::holds_alternative<DiffractionExcess>(excess.model) && !is_raised && !excess.terminal.isSet();
+bool isDiffraction(const EmitterExcess& excess) {
+  return std::holds_alternative<DiffractionExcess>(excess.model);
 }
 
 /// Work of the march on the GPU; 0: nothing.
@@ -109,9 +103,8 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   }
   const propagation::PathExtent extent = pathExtent(station, setup_.columns);
   work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
-  work.ground.is_smooth = setup_.terrain == nullptr;
+  work.ground = groundPosts(setup_.terrain.get(), work.ranges_m);
   if (terrain_ != nullptr) work.ground.terrain = terrain_->view();
-  work.ground.range_count = static_cast<int>(work.ranges_m.size());
   work.has_mechanisms = setup_.needs[request.emitter].mechanisms && hasMechanisms(model);
   if (setup_.needs[request.emitter].clutter_map)
     work.clutter = clutterMapTask(scenario, emitter, station, &extent);
@@ -269,7 +262,7 @@ void DeviceGeometry::computeUnmarched(const std::vector<GeometryRequest>& reques
   findShadows(works, stream);
   fillDiffractions(requests, works, stream);
   for (const Work& work : works) {
-    if (work.is_equation || !work.model || isDiffraction(*work.model, setup_.terrain.get())) continue;
+    if (work.is_equation || !work.model || isDiffraction(*work.model)) continue;
     fillExcess(*work.model, work.task.station, excess_grid_, work.ground, work.excess, scratch(), stream);
   }
   for (std::size_t r = 0; r < requests.size(); ++r) {
@@ -301,43 +294,30 @@ void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t st
 void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& requests,
                                       const std::vector<Work>& works, cudaStream_t stream) {
   std::vector<DiffractionTask> tasks;
-  int most_ranges = 0;
   for (std::size_t r = 0; r < works.size(); ++r) {
     const Work& work = works[r];
-    if (work.is_equation && setup_.terrain != nullptr) {
-      tasks.push_back(
-          {besideEquation(requests[r], work), AirLoss{}, work.task.station, work.ground, work.excess});
-      tasks.back().station.refraction.exponential = false;  // no refraction: not on the effective earth
-    } else if (!work.is_equation && work.model && isDiffraction(*work.model, setup_.terrain.get())) {
-      tasks.push_back({std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station,
-                       work.ground, work.excess});
+    if (work.is_equation ? setup_.terrain == nullptr : !work.model) continue;
+    // Of models that read the diffraction beside their own excess it is without air and refraction.
+    DiffractionTask task{{}, AirLoss{}, work.task.station, work.ground, work.excess};
+    task.station.refraction.exponential = false;
+    if (work.is_equation) {
+      task.model = besideEquation(requests[r], work);
+    } else if (const auto* itm = std::get_if<propagation::ItmExcess>(&work.model->model)) {
+      task.model = itm->diffraction;
+      task.ground.is_raised = work.model->is_raised && work.ground.terrain.hasCover();
+    } else if (isDiffraction(*work.model)) {
+      task = {std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station, work.ground,
+              work.excess, work.model->terminal};
+      task.ground.is_raised = work.model->is_raised && work.ground.terrain.hasCover();
+      task.at_crossings = true;
     } else {
       continue;
     }
-    most_ranges = std::max(most_ranges, work.ground.range_count);
+    tasks.push_back(task);
   }
   if (tasks.empty()) return;
-  const DiffractionTask* const on_device = diffraction_.send(tasks, stream);
-  const int count = static_cast<int>(tasks.size());
-  const std::uint8_t* left = nullptr;
-  if (setup_.columns.every_height && columns_.layers <= kMostClearHeights) {
-    left = fillClearColumns(on_device, count, stream);
-    if (left == nullptr) return;
-  }
-  fillDiffraction(on_device, count, most_ranges, excess_grid_, columns_.row, left, scratch(), stream);
-}
-
-/// @return the columns that were left; null: none
-const std::uint8_t* DeviceGeometry::fillClearColumns(const DiffractionTask* tasks, int count,
-                                                     cudaStream_t stream) {
-  std::uint8_t* const left =
-      left_.atLeast(static_cast<std::size_t>(count) * static_cast<std::size_t>(columns_.count));
-  left_count_.resize(1);
-  check(cudaMemsetAsync(left_count_.data(), 0, sizeof(unsigned), stream), "cudaMemsetAsync");
-  fillClear(tasks, count, excess_grid_, columns_.row, left, left_count_.data(), stream);
-  unsigned left_count = 0;
-  left_count_.download(&left_count, stream);
-  return left_count == 0 ? nullptr : left;
+  fillDiffraction(diffraction_.send(tasks, stream), static_cast<int>(tasks.size()), excess_grid_,
+                  columns_.row, stream);
 }
 
 /// PeOthers::diffraction of an equation before its plan.
@@ -384,7 +364,7 @@ std::size_t DeviceGeometry::bytes() const {
   std::size_t bytes = bytesOf(grid_columns_) + bytesOf(position_columns_) + bytesOf(t_m_) +
                       bytesOf(first_valid_k_) + bytesOf(tasks_) + bytesOf(ranges_m_) + bytesOf(shadows_) +
                       bytesOf(terms_) + bytesOf(diffraction_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
-                      bytesOf(model_tables_) + bytesOf(unknown_) + bytesOf(left_);
+                      bytesOf(model_tables_) + bytesOf(unknown_);
   if (setup_.columns.on_device != nullptr) bytes += setup_.columns.on_device->bytes();
   for (const std::unique_ptr<Marcher>& marcher : marchers_) {
     if (marcher == nullptr) continue;

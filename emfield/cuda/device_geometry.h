@@ -73,7 +73,6 @@ class DeviceGeometry {
   void findShadows(const std::vector<Work>& works, cudaStream_t stream);
   void fillDiffractions(const std::vector<GeometryRequest>& requests, const std::vector<Work>& works,
                         cudaStream_t stream);
-  const std::uint8_t* fillClearColumns(const DiffractionTask* tasks, int count, cudaStream_t stream);
   DiffractionExcess besideEquation(const GeometryRequest& request, const Work& work) const;
   void startMarch(Work& work, Marcher& marcher);
   void readMarch(const Work& work, Marcher& marcher, cudaStream_t stream, StageClock& clock);
@@ -114,8 +113,6 @@ class DeviceGeometry {
   emscape::cuda::Buffer<DeviceShadowTask> shadows_;
   emscape::cuda::Buffer<RangeTerms<float>> terms_;
   emscape::cuda::Buffer<DiffractionTask> diffraction_;
-  emscape::cuda::Buffer<std::uint8_t> left_;
-  emscape::cuda::Buffer<unsigned> left_count_;
   emscape::cuda::Buffer<double> scratch_;
   emscape::cuda::Buffer<GeometryCounts> counts_;
   emscape::cuda::Buffer<std::uint8_t> unknown_;

@@ -1,112 +1,24 @@
+// `diffraction` on the device: a thread a column, which reads its posts again for some receivers at a time and
+// stores none.
+//
+// The first pass over a path's posts gives the steepest slope from the transmitter, and the slope of the line
+// of sight above which every post is clear: nu of a post falls linearly with the receiver's height. Only
+// receivers below that, or not clear of the smooth earth, are computed; the others have no loss. Few
+// receivers, as those of a map, take one pass. The same formulas as propagation/diffraction/excess.cpp.
+
 #include <algorithm>
 #include <cstdint>
-#include <type_traits>
 
 #include "base/cuda/cuda_memory.h"
+#include "emfield/cuda/column_posts.h"
 #include "emfield/cuda/column_tiles.h"
-#include "propagation/diffraction/obstacle_maxima.h"
 
 namespace emscape::emfield::cuda {
 namespace {
 
-using propagation::DiffractionColumn;
-using propagation::TerrainSums;
-
-/// Summary of a block of posts; see DiffractionColumn.
-struct PostBlock {
-  float highest_msl_m, lowered_msl_m;
-};
-
-/// Memory for the profiles of the columns in progress: for each post or block of posts, the values of
-/// consecutive threads.
-class ProfileMemory {
- public:
-  /// @param posts  of the longest profile
-  ProfileMemory(const ScratchMemory& memory, int posts) {
-    constexpr int kBlock = propagation::kDiffractionBlock;
-    const auto blocks = static_cast<std::size_t>((posts + kBlock - 1) / kBlock);
-    const std::size_t bytes_each = blocks * (kBlock * sizeof(float) + sizeof(PostBlock));
-    threads_ = static_cast<int>(std::min<std::size_t>(memory.bytes / bytes_each, 1 << 30)) / kColumnThreads *
-               kColumnThreads;
-    if (threads_ == 0) throwTooSmall(bytes_each, memory.bytes);
-    blocks_ = static_cast<PostBlock*>(memory.data);
-    heights_msl_m_ = reinterpret_cast<float*>(blocks_ + blocks * static_cast<std::size_t>(threads_));
-  }
-  int threads() const { return threads_; }
-  __device__ float& height_msl_m(int thread, int post) const {
-    return heights_msl_m_[static_cast<long long>(post) * threads_ + thread];
-  }
-  __device__ PostBlock& block(int thread, int b) const {
-    return blocks_[static_cast<long long>(b) * threads_ + thread];
-  }
-
- private:
-  int threads_;
-  PostBlock* blocks_;
-  float* heights_msl_m_;
-};
-
-/// A column's profile for DiffractionColumn, as propagation::ProfilePosts.
-class ColumnPosts {
- public:
-  /// Reads the profile.
-  __device__ ColumnPosts(const DiffractionTask& task, const FastInverse& path, float ground_msl_m,
-                         const ProfileMemory& memory, int thread)
-      : ground_(task.ground),
-        ranges_m_(task.ground.ranges_m),
-        before_(task.ground.lastBefore(path.distance_m)),
-        thread_(thread),
-        distance_m_(path.distance_m),
-        ground_msl_m_(ground_msl_m),
-        memory_(memory) {
-    constexpr int kBlock = propagation::kDiffractionBlock;
-    const auto curvature = static_cast<float>(task.model.model.half_curvature);
-    const int last_block = before_ / kBlock * kBlock;
-    PostBlock block{-HUGE_VALF, -HUGE_VALF};
-    double base = 0, before_m = 0, before_height_m = 0;
-    visitPosts(task.station, task.ground, path, count(), [&](int i, float height_msl_m) {
-      memory.height_msl_m(thread, i) = height_msl_m;
-      const double range_m = ranges_m_[i];
-      if (i == 0) base = static_cast<double>(height_msl_m);
-      const double height_m = static_cast<double>(height_msl_m) - base;
-      if (i > 0 && i < last_block) sums_.add(before_m, before_height_m, range_m, height_m);
-      before_m = range_m;
-      before_height_m = height_m;
-      const auto range = static_cast<float>(range_m);
-      block.highest_msl_m = fmaxf(block.highest_msl_m, height_msl_m);
-      block.lowered_msl_m = fmaxf(block.lowered_msl_m, height_msl_m - curvature * range * range);
-      if (i % kBlock != kBlock - 1 && i != before_) return;
-      memory.block(thread, i / kBlock) = block;
-      block = {-HUGE_VALF, -HUGE_VALF};
-    });
-  }
-
-  __device__ int count() const { return before_ + 1; }
-  __device__ double range_m(int i) const { return ranges_m_[i]; }
-  __device__ float height_msl_m(int i) const { return memory_.height_msl_m(thread_, i); }
-  __device__ float highest_msl_m(int b) const { return memory_.block(thread_, b).highest_msl_m; }
-  __device__ float lowered_msl_m(int b) const { return memory_.block(thread_, b).lowered_msl_m; }
-  /// Sums before the last block, the only ones that DiffractionColumn reads.
-  __device__ TerrainSums sumsBefore(int) const { return sums_; }
-  __device__ double distance_m() const { return distance_m_; }
-  __device__ float ground_msl_m() const { return ground_msl_m_; }
-  __device__ double sea_m() const {
-    return propagation::lengthOverSea_m(
-        count() + 1, [this](int i) { return i <= before_ ? ranges_m_[i] : distance_m_; },
-        [this](int i) { return i <= before_ ? height_msl_m(i) : ground_msl_m_; });
-  }
-  __device__ int lastBefore(double range_m) const { return min(ground_.lastBefore(range_m), before_); }
-
- private:
-  const GroundPosts& ground_;
-  const double* ranges_m_;
-  int before_;
-  int thread_;
-  double distance_m_;
-  float ground_msl_m_;
-  const ProfileMemory& memory_;
-  TerrainSums sums_;
-};
+using propagation::DiffractionModel;
+using propagation::EffectiveHeights;
+using propagation::TerrainTrend;
 
 /// A separate call, so that its registers are not part of those of the columns.
 __device__ __noinline__ float effectiveHeight_m(const Station& station, float height_msl_m, double range_m) {
@@ -114,192 +26,339 @@ __device__ __noinline__ float effectiveHeight_m(const Station& station, float he
       station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m), station.height_msl_m, range_m));
 }
 
-/// Height of a receiver, as input of the model.
-__device__ float modelHeight_m(const Station& station, float height_msl_m, double range_m) {
-  return station.refraction.exponential ? effectiveHeight_m(station, height_msl_m, range_m) : height_msl_m;
-}
-
-/// The column of a thread in a tile.
-template <int kReceivers>
-__device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGrid& grid, int c,
-                                    const ProfileMemory& memory, int thread) {
-  const auto layer = static_cast<long long>(grid.column_count);
-  const auto set = [&](int layer_k, float excess_db) {
-    task.to.out.excess.set(static_cast<std::size_t>(layer_k * layer + c), excess_db);
+/// Bullington's nu over a smooth earth with posts at the same ranges, as propagation::bullingtonNu. A
+/// separate call.
+/// @param heights  of the antennas above it
+__device__ __noinline__ float smoothEarthNu(const DiffractionModel<float>& model, const ColumnPosts& posts,
+                                            float distance_m, const EffectiveHeights<float>& heights) {
+  const float k = model.half_curvature, d = distance_m, tx_m = heights.tx_m, rx_m = heights.rx_m;
+  // Largest slope from an antenna: at its horizon, that is at one of the posts on either side of it.
+  const auto largest = [](const PostsAround& around, const auto& slopeAt) {
+    return fmaxf(around.before_m > 0 ? slopeAt(around.before_m) : -HUGE_VALF,
+                 around.after_m < HUGE_VALF ? slopeAt(around.after_m) : -HUGE_VALF);
   };
-  const int lowest = grid.firstValid(static_cast<std::size_t>(c));
-  for (int below = 0; below < lowest; ++below) set(below, 0);
-  if (grid.isLeftOut(static_cast<std::size_t>(c))) return;
-  const AirLoss& air = task.air;
-  const GridColumn column = grid.columns[static_cast<std::size_t>(c)];
-  bool is_unknown = false;
-  for (int segment = 0; segment < grid.segments; ++segment) {
-    const int end = grid.firstLayer(segment + 1);
-    int k = max(lowest, grid.firstLayer(segment));
-    const auto heightOf = [&](int layer_k) {
-      const int here = min(layer_k, end - 1);
-      return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[here])));
-    };
-    const FastInverse path = grid.coordinatesOf(task.station, static_cast<std::size_t>(c), segment);
-    const propagation::AirColumn above(air, static_cast<float>(path.distance_m));
-    bool is_free = !(path.distance_m > 0);  // at the emitter itself
-    if (!is_free) {
-      const float ground_msl_m =
-          grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(task.station, task.ground, path);
-      const ColumnPosts posts(task, path, ground_msl_m, memory, thread);
-      DiffractionColumn<float, ColumnPosts> receivers(task.model.model, posts, task.model.tx_msl_m);
-      if (receivers.isUnknown()) {
-        is_unknown = true;
-        for (; k < end; ++k) set(k, NAN);
-      }
-      while (k < end && !is_free) {
-        float rx_msl_m[kReceivers], loss_db[kReceivers];
-#pragma unroll
-        for (int j = 0; j < kReceivers; ++j) {
-          rx_msl_m[j] = modelHeight_m(task.station, heightOf(k + j), path.distance_m);
-        }
-        is_free = receivers.losses(rx_msl_m, loss_db);
-#pragma unroll
-        for (int j = 0; j < kReceivers; ++j) {
-          if (k + j >= end) break;
-          if (!air.isClear()) loss_db[j] += above.lossDb(heightOf(k + j));
-          set(k + j, loss_db[j]);
-        }
-        k += kReceivers;
-      }
-    }
-    for (; k < end; ++k) set(k, air.isClear() ? 0 : above.lossDb(heightOf(k)));
+  const float tx_slope = largest(posts.around(std::sqrt(tx_m / k)),
+                                 [=](float range_m) { return k * (d - range_m) - tx_m / range_m; });
+  const float slope_to_rx = (rx_m - tx_m) / d;
+  if (tx_slope >= slope_to_rx) {
+    const float rx_slope = largest(posts.around(fmaxf(d - std::sqrt(rx_m / k), 0)),
+                                   [=](float range_m) { return k * range_m - rx_m / (d - range_m); });
+    return bullingtonEdgeNu(model, d, slope_to_rx, tx_slope, rx_slope);
   }
-  if (is_unknown) markUnknown(task.to, c);
-}
-
-/// @param left  null: all columns; else those that fillClear() left
-template <int kReceivers>
-__global__ void __launch_bounds__(kColumnThreads, 5)
-    diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
-                      const std::uint8_t* left, const __grid_constant__ ProfileMemory memory,
-                      const __grid_constant__ Tiles tiles) {
-  tiles.eachColumn(grid, [&](int task, int c, int thread) {
-    if (left != nullptr && left[task * grid.column_count + static_cast<std::size_t>(c)] == 0) return;
-    diffractionOfColumn<kReceivers>(tasks[task], grid, c, memory, thread);
+  // The square of the clearance over d1 d2 has a single minimum between antennas that are not below ground:
+  // where its logarithm's derivative changes its sign.
+  float nearer_m = 0, farther_m = d;
+  for (int i = 0; i < 24; ++i) {
+    const float at_m = (nearer_m + farther_m) / 2, beyond_m = d - at_m;
+    const float clearance_m = tx_m + slope_to_rx * at_m - k * at_m * beyond_m;
+    const float rise = slope_to_rx - k * (beyond_m - at_m);
+    const bool falls = 2 * rise * at_m * beyond_m < clearance_m * (beyond_m - at_m);
+    nearer_m = falls ? at_m : nearer_m;
+    farther_m = falls ? farther_m : at_m;
+  }
+  return largest(posts.around(nearer_m), [=](float range_m) {
+    const float beyond_m = d - range_m;
+    return -(tx_m + slope_to_rx * range_m - k * range_m * beyond_m) *
+           std::sqrt(2 * d / (model.earth.wavelength_m * range_m * beyond_m));
   });
 }
 
-/// Sets the excess of a column without keeping its posts.
-/// @return false: it was not set, because a receiver is not clear of the smooth earth
-template <int kReceivers>
-__device__ bool fillClearColumn(const DiffractionTask& task, const ExcessGrid& grid, int c) {
+/// The receivers over the end of a path. Heights are above the first post unless stated otherwise; "plain"
+/// values leave out the earth's bulge.
+class Receivers {
+ public:
+  __device__ Receivers(const DiffractionTask& task, ColumnPosts& posts, const FastInverse& path,
+                       float ground_msl_m)
+      : task_(task),
+        posts_(posts),
+        base_msl_m_(groundAt(task.station, task.ground, {0, path.sin_azimuth, path.cos_azimuth})),
+        distance_m_(static_cast<float>(path.distance_m)),
+        ground_m_(ground_msl_m - base_msl_m_),
+        tx_m_(DiffractionModel<float>::raised_m(task.model.tx_msl_m - base_msl_m_, 0)),
+        edge_scale_(std::sqrt(2 * distance_m_ / task.model.model.earth.wavelength_m)),
+        half_curvature_(task.model.model.half_curvature),
+        sea_fraction_(task.model.model.earth.sea_fraction) {}
+
+  /// Of a receiver.
+  struct Maxima {
+    float edge = -HUGE_VALF;  ///< slope from it, of one below the steepest ray; else height over sqrt(d1 d2)
+    float plain_rx_slope = -HUGE_VALF, plain_height_m = -HUGE_VALF;
+  };
+
+  __device__ float receiver_m(float rx_msl_m) const {
+    return DiffractionModel<float>::raised_m(rx_msl_m - base_msl_m_, ground_m_);
+  }
+
+  /// The first pass.
+  /// @param lowest_m  of the lowest receiver
+  /// @param rx_m      of receivers whose maxima are found, too
+  /// @return false if terrain is missing along the profile
+  template <int kReceivers>
+  __device__ bool survey(float lowest_m, const float* rx_m, Maxima* most) {
+    const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
+    has_earth_ = !isClearThroughout(earth, distance_m_,
+                                    sightLine(earth, distance_m_, tx_m_, lowest_m - ground_m_));
+    const bool for_any = __any_sync(__activemask(), has_earth_);  // one loop for all threads
+    return for_any ? pass<kReceivers, true, true>(rx_m, most) : pass<kReceivers, true, false>(rx_m, most);
+  }
+  /// Finds the maxima of receivers, lowest first.
+  template <int kReceivers>
+  __device__ void find(const float* rx_m, Maxima* most) {
+    const bool in_earth = isInEarth(rx_m[0]) && slopeTo(rx_m[0]) < plain_tx_slope_;
+    if (__any_sync(__activemask(), in_earth)) {
+      pass<kReceivers, false, true>(rx_m, most);
+    } else {
+      pass<kReceivers, false, false>(rx_m, most);
+    }
+  }
+
+  __device__ bool isLossy(float rx_m) const { return slopeTo(rx_m) < clear_slope_ || isInEarth(rx_m); }
+
+  /// @see P.526-15 eq. (68)
+  __device__ float lossDb(float rx_m, const Maxima& most) const {
+    const float above = tx_slope_ - slopeTo(rx_m);
+    const float relative = above >= 0 ? std::sqrt(fmaxf(above * most.edge, 0)) : most.edge;
+    const float loss_db = propagation::bullingtonLossDb(edge_scale_ * relative, distance_m_);
+    return isInEarth(rx_m) ? loss_db + earthCorrectionDb(rx_m, most) : loss_db;
+  }
+
+ private:
+  __device__ float slopeTo(float rx_m) const { return (rx_m - tx_m_) / distance_m_; }
+
+  /// @tparam kSurvey  finds what is the same for all receivers
+  /// @tparam kEarth   also for the smooth earth
+  template <int kReceivers, bool kSurvey, bool kEarth>
+  __device__ __noinline__ bool pass(const float* rx_m, Maxima* most) {
+    constexpr int kRoom = kReceivers > 0 ? kReceivers : 1;
+    constexpr bool kBoth = kSurvey && kReceivers > 0;  // it is not known which are below the steepest ray
+    const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
+    const float d = distance_m_, base_msl_m = base_msl_m_, tx_m = tx_m_, half_curvature = half_curvature_;
+    float slope[kRoom], edge[kRoom], nearest[kRoom], plain_rx[kRoom], plain[kRoom];
+    bool is_below[kRoom];
+#pragma unroll
+    for (int j = 0; j < kReceivers; ++j) {
+      slope[j] = slopeTo(rx_m[j]);
+      is_below[j] = slope[j] <= tx_slope_;
+    }
+    float tx, clear, plain_tx, unknown, v1, v2, sea_m;
+    PathPost before{};
+    float v1_rest, v2_rest;  // of the sums' rounding
+    const auto add = [](float term, float& sum, float& rest) {
+      const float more = term - rest, next = sum + more;
+      rest = (next - sum) - more;
+      sum = next;
+    };
+    const auto addToTrend = [&](const PathPost& to) {  // as propagation::TerrainSums
+      const float length_m = to.range_m - before.range_m;
+      const float from_m = before.height_msl_m - base_msl_m, to_m = to.height_msl_m - base_msl_m;
+      add(length_m * (from_m + to_m), v1, v1_rest);
+      add(length_m * (to_m * (2 * to.range_m + before.range_m) + from_m * (to.range_m + 2 * before.range_m)),
+          v2, v2_rest);
+      sea_m = fmaf(length_m, (before.height_msl_m <= 0 ? 0.5f : 0) + (to.height_msl_m <= 0 ? 0.5f : 0), sea_m);
+      before = to;
+    };
+    bool is_whole;
+    do {
+      tx = clear = plain_tx = -HUGE_VALF;
+      unknown = base_msl_m - base_msl_m + (ground_m_ - ground_m_);
+      v1 = v2 = v1_rest = v2_rest = sea_m = 0;
+      before = {0, base_msl_m};
+#pragma unroll
+      for (int j = 0; j < kReceivers; ++j) edge[j] = nearest[j] = plain_rx[j] = plain[j] = -HUGE_VALF;
+      is_whole = posts_.each<kSurvey && kEarth>([&](const PathPost& post) {
+        const float range = post.range_m, beyond = d - range, product = range * beyond;
+        float root;
+        asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(product));
+        const float above = post.height_msl_m - base_msl_m - tx_m;
+        const float bulged = fmaf(half_curvature, product, above);
+        if constexpr (kSurvey) {
+          unknown += post.height_msl_m - post.height_msl_m;
+          const float per_range = beyond * root;
+          tx = fmaxf(tx, per_range * (bulged * root));
+          clear = fmaxf(clear, per_range * fmaf(bulged, root, clearance));
+          if constexpr (kEarth) {
+            plain_tx = fmaxf(plain_tx, per_range * (above * root));
+            addToTrend(post);
+          }
+        }
+        const float per_beyond = root * root * range, bend = half_curvature * range;
+#pragma unroll
+        for (int j = 0; j < kReceivers; ++j) {
+          const float above_line = fmaf(-slope[j], range, bulged);
+          const float from_rx = above_line * (kBoth || is_below[j] ? per_beyond : root);
+          edge[j] = fmaxf(edge[j], from_rx);
+          if constexpr (kBoth) nearest[j] = fmaxf(nearest[j], above_line * root);
+          if constexpr (kEarth) {  // read of those below the steepest plain ray, and so below the steepest one
+            plain_rx[j] = fmaxf(plain_rx[j], from_rx - bend);
+            plain[j] = fmaxf(plain[j], fmaf(-slope[j], range, above));
+          }
+        }
+      });
+    } while (!is_whole);
+    if constexpr (kSurvey) {
+      tx_slope_ = tx;
+      clear_slope_ = clear;
+      plain_tx_slope_ = plain_tx;
+      if constexpr (kEarth) {
+        addToTrend({d, ground_m_ + base_msl_m});
+        const propagation::TerrainSums sums{static_cast<double>(v1), static_cast<double>(v2)};
+        trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(d)));
+        trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(d)));
+        if (task_.model.model.sea_by_height) sea_fraction_ = sea_m / d;
+      }
+    }
+#pragma unroll
+    for (int j = 0; j < kReceivers; ++j) {
+      most[j].edge = kBoth && !(slope[j] <= tx) ? nearest[j] : edge[j];
+      most[j].plain_rx_slope = plain_rx[j];
+      most[j].plain_height_m = plain[j];
+    }
+    return unknown == 0;
+  }
+
+  __device__ TerrainTrend<float> trend() const {
+    TerrainTrend<float> trend;
+    trend.start_msl_m = trend_start_m_;
+    trend.end_msl_m = trend_end_m_;
+    trend.highest_m = trend.tx_angle = trend.rx_angle = -HUGE_VALF;
+    trend.tx_ground_msl_m = 0;
+    trend.rx_ground_msl_m = ground_m_;
+    return trend;
+  }
+  /// False if the smooth earth has no loss for a receiver and those above; see LaneColumn.
+  __device__ bool isInEarth(float rx_m) const {
+    if (!has_earth_) return false;
+    const EffectiveHeights<float> least = effectiveHeights(trend(), tx_m_, rx_m);
+    const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
+    return !isClearThroughout(earth, distance_m_, sightLine(earth, distance_m_, least.tx_m, least.rx_m));
+  }
+  /// Smooth-earth correction (dB): the spherical earth's loss minus Bullington's, at least 0.
+  __device__ float earthCorrectionDb(float rx_m, const Maxima& most) const {
+    TerrainTrend<float> over = trend();
+    over.highest_m = most.plain_height_m;
+    over.tx_angle = plain_tx_slope_ - slopeTo(rx_m);
+    over.rx_angle = most.plain_rx_slope;
+    const EffectiveHeights<float> heights = effectiveHeights(over, tx_m_, rx_m);
+    propagation::SphericalEarth<float> earth = task_.model.model.earth;
+    earth.sea_fraction = sea_fraction_;
+    const float spherical_db = sphericalEarthLossDb(earth, distance_m_, heights.tx_m, heights.rx_m);
+    if (!(spherical_db > 0)) return 0;
+    const float nu = smoothEarthNu(task_.model.model, posts_, distance_m_, heights);
+    return fmaxf(spherical_db - propagation::bullingtonLossDb(nu, distance_m_), 0);
+  }
+
+  const DiffractionTask& task_;
+  ColumnPosts& posts_;
+  float base_msl_m_, distance_m_, ground_m_, tx_m_;
+  float edge_scale_;  ///< from heights over sqrt(d1 d2) to nu
+  float half_curvature_, sea_fraction_;
+  bool has_earth_ = false;             ///< the ground alone does not prove that the smooth earth has no loss
+  float tx_slope_ = -HUGE_VALF;        ///< largest slope from the transmitter to an obstacle
+  float clear_slope_ = -HUGE_VALF;     ///< of the lowest line of sight that all obstacles are clear of
+  float plain_tx_slope_ = -HUGE_VALF;  ///< tx_slope without the earth's bulge
+  float trend_start_m_ = 0, trend_end_m_ = 0;  ///< the line fitted to the terrain, with has_earth_
+};
+
+/// A segment of a column.
+/// @tparam kReceivers  at a time
+/// @tparam kOnePass    without a pass for all receivers
+template <int kReceivers, bool kOnePass>
+__device__ void fillSegment(const DiffractionTask& task, const ExcessGrid& grid, int c, int segment) {
   const auto column_index = static_cast<std::size_t>(c);
   const auto set = [&](int k, float excess_db) {
     task.to.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + column_index, excess_db);
   };
-  const int lowest = grid.firstValid(column_index);
-  const auto setUnknown = [&] {
-    for (int k = lowest; k < grid.layers; ++k) set(k, NAN);
-    markUnknown(task.to, c);
-  };
-  for (int k = 0; k < lowest; ++k) set(k, 0);
-  if (grid.isWithoutGround(column_index)) {
-    setUnknown();
-    return true;
-  }
-  if (lowest == grid.layers) return true;
-
-  const FastInverse path = grid.coordinatesOf(task.station, column_index, 0);
-  if (!(path.distance_m > 0)) return false;  // at the emitter itself
+  const int end = grid.firstLayer(segment + 1);
+  int k = max(grid.firstValid(column_index), grid.firstLayer(segment));
+  if (k >= end) return;
   const GridColumn column = grid.columns[column_index];
-  const auto distance_m = static_cast<float>(path.distance_m);
-  const float base_msl_m = groundAt(task.station, task.ground, {0, path.sin_azimuth, path.cos_azimuth});
-  const propagation::DiffractionModel<float>& model = task.model.model;
-  const float tx_m = model.raised_m(task.model.tx_msl_m - base_msl_m, 0);
-  const float ground_m = grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] - base_msl_m : 0;
-  const auto heightMslOf = [&](int k) {
-    return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[min(k, grid.layers - 1)])));
+  const FastInverse path = grid.coordinatesOf(task.station, column_index, segment);
+  const float ground_msl_m =
+      grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(task.station, task.ground, path);
+  const propagation::AirColumn air(task.air, static_cast<float>(path.distance_m));
+  const auto heightOf = [&](int layer) {
+    return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[min(layer, end - 1)])));
   };
-  const auto receiver_m = [&](int k) {
-    return model.raised_m(modelHeight_m(task.station, heightMslOf(k), path.distance_m) - base_msl_m,
-                          ground_m);
+  const auto addOthers = [&](int layer, float loss_db) {
+    if (!task.air.isClear()) loss_db += air.lossDb(heightOf(layer));
+    if (task.terminal.isSet())
+      loss_db += task.terminal.lossDb(static_cast<float>(path.distance_m), heightOf(layer) - ground_msl_m);
+    set(layer, loss_db);
   };
-  // The antennas are at least as high above the smooth earth as above their ground.
-  if (!isClearThroughout(model.earth, distance_m,
-                         sightLine(model.earth, distance_m, tx_m, receiver_m(lowest) - ground_m))) {
-    return false;
-  }
-  const propagation::AirColumn air(task.air, distance_m);
-  const int posts = task.ground.lastBefore(path.distance_m) + 1;
-  for (int first = lowest; first < grid.layers; first += kReceivers) {
+  if (path.distance_m > 0) {  // not at the emitter itself
+    ColumnPosts posts(task.station, task.ground, path, task.at_crossings);
+    Receivers receivers(task, posts, path, ground_msl_m);
+    typename Receivers::Maxima most[kReceivers];
     float rx_m[kReceivers];
+    const auto setReceivers = [&] {
 #pragma unroll
-    for (int j = 0; j < kReceivers; ++j) rx_m[j] = receiver_m(first + j);
-    propagation::ObstacleMaxima<float, kReceivers> obstacles(model, distance_m, tx_m, rx_m);
-    float known = 0;  // NaN after a missing height
-    visitPosts(task.station, task.ground, path, posts, [&](int i, float height_msl_m) {
-      known += height_msl_m;
-      if (i > 0) obstacles.add(static_cast<float>(task.ground.ranges_m[i]), height_msl_m - base_msl_m);
-    });
-    if (isnan(known)) {
-      setUnknown();
-      return true;
+      for (int j = 0; j < kReceivers; ++j) {
+        const float height_msl_m = heightOf(k + j);
+        rx_m[j] = receivers.receiver_m(task.station.refraction.exponential
+                                           ? effectiveHeight_m(task.station, height_msl_m, path.distance_m)
+                                           : height_msl_m);
+      }
+    };
+    setReceivers();
+    bool is_known = true;
+    if constexpr (!kOnePass) is_known = receivers.survey<0>(rx_m[0], rx_m, most);
+    while (k < end && is_known) {
+      if constexpr (kOnePass) {
+        is_known = receivers.survey<kReceivers>(rx_m[0], rx_m, most);
+        if (!is_known) break;
+      } else {
+        if (!receivers.isLossy(rx_m[0])) break;
+        receivers.find<kReceivers>(rx_m, most);
+      }
+#pragma unroll 1
+      for (int j = 0; j < kReceivers && k + j < end; ++j) {
+        addOthers(k + j, receivers.isLossy(rx_m[j]) ? receivers.lossDb(rx_m[j], most[j]) : 0);
+      }
+      k += kReceivers;
+      setReceivers();
     }
-#pragma unroll
-    for (int j = 0; j < kReceivers; ++j) {
-      if (first + j >= grid.layers) break;
-      const float air_db = task.air.isClear() ? 0 : air.lossDb(heightMslOf(first + j));
-      set(first + j, obstacles.lossDb(model, j) + air_db);
+    if (!is_known) {
+      for (; k < end; ++k) set(k, NAN);
+      markUnknown(task.to, c);
     }
   }
-  return true;
+  for (; k < end; ++k) addOthers(k, 0);
 }
 
-template <int kReceivers>
-__global__ void __launch_bounds__(kColumnThreads, 5)
-    clearColumnsKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
-                       const __grid_constant__ Tiles tiles, std::uint8_t* left, unsigned* left_count) {
-  tiles.eachColumn(grid, [&](int task, int c, int) {
-    const bool is_left = !fillClearColumn<kReceivers>(tasks[task], grid, c);
-    left[task * grid.column_count + static_cast<std::size_t>(c)] = is_left ? 1 : 0;
-    if (is_left) atomicAdd(left_count, 1u);
+// Fewer registers, for more threads at a time, take more time.
+template <int kReceivers, bool kOnePass>
+__global__ void __launch_bounds__(kColumnThreads, 4)
+    diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
+                      const __grid_constant__ Tiles tiles) {
+  tiles.eachColumn(grid, [&](int number, int c, int) {
+    const DiffractionTask& task = tasks[number];
+    const auto column = static_cast<std::size_t>(c);
+    const bool is_unknown = grid.isWithoutGround(column);
+    const int lowest = grid.firstValid(column);
+    for (int k = 0; k < (is_unknown ? grid.layers : lowest); ++k)
+      task.to.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + column, k < lowest ? 0 : NAN);
+    if (is_unknown) return markUnknown(task.to, c);
+    for (int segment = 0; segment < grid.segments; ++segment)
+      fillSegment<kReceivers, kOnePass>(task, grid, c, segment);
   });
-}
-
-/// Calls f with the first of some numbers, as a std::integral_constant, that is not below `receivers`.
-template <int kFirst, int... kOthers, class Function>
-void withReceivers(int receivers, const Function& f) {
-  if constexpr (sizeof...(kOthers) > 0) {
-    if (receivers > kFirst) return withReceivers<kOthers...>(receivers, f);
-  }
-  f(std::integral_constant<int, kFirst>());
 }
 
 }  // namespace
 
-void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
-                     const std::uint8_t* left, const ScratchMemory& scratch, cudaStream_t stream) {
+void fillDiffraction(const DiffractionTask* tasks, int count, const ExcessGrid& grid, int row,
+                     cudaStream_t stream) {
   const Tiles tiles(grid, row, count);
-  const ProfileMemory memory(scratch, ranges);
-  const auto blocks = static_cast<unsigned>(std::min(tiles.count(), memory.threads() / kColumnThreads));
   const auto launch = [&](auto kernel) {
-    kernel<<<blocks, kColumnThreads, 0, stream>>>(tasks, grid, left, memory, tiles);
+    kernel<<<static_cast<unsigned>(tiles.count()), kColumnThreads, 0, stream>>>(tasks, grid, tiles);
   };
   if (grid.layers == 1) {
-    launch(diffractionKernel<1>);
+    launch(diffractionKernel<1, true>);
+  } else if (grid.layers <= 16 && grid.every_height) {
+    launch(diffractionKernel<4, true>);
   } else {
-    launch(diffractionKernel<propagation::kDiffractionReceivers>);
+    launch(diffractionKernel<8, false>);
   }
   emscape::cuda::checkLaunch("diffraction");
-}
-
-void fillClear(const DiffractionTask* tasks, int count, const ExcessGrid& grid, int row, std::uint8_t* left,
-               unsigned* left_count, cudaStream_t stream) {
-  const Tiles tiles(grid, row, count);
-  const auto blocks = static_cast<unsigned>(tiles.count());
-  constexpr int kMost = 8;
-  const int passes = (grid.layers + kMost - 1) / kMost;
-  withReceivers<1, 2, 4, 6, kMost>((grid.layers + passes - 1) / passes, [&](auto receivers) {
-    clearColumnsKernel<receivers()>
-        <<<blocks, kColumnThreads, 0, stream>>>(tasks, grid, tiles, left, left_count);
-  });
-  emscape::cuda::checkLaunch("diffraction of clear columns");
 }
 
 }  // namespace emscape::emfield::cuda

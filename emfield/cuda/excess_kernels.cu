@@ -90,6 +90,10 @@ __global__ void __launch_bounds__(kColumnThreads)
   const ExcessScratch scratch = memory.scratch(n);
   const ExcessColumn column = task.readSegment(run.first + n, run.segment, scratch, PostReader{});
   const int first = task.grid.firstLayer(run.segment);
+  if constexpr (std::is_same_v<Model, propagation::ItmExcess>) {  // that of `diffraction`
+    for (int k = first; k < first + column.count; ++k)
+      scratch.excess_db[k] = to.out.excess.get(k * task.grid.column_count + run.first + n);
+  }
   const unsigned warnings = task.model.begin(column, scratch, scratch.excess_db + first);
   memory.begun(n) = {column, warnings == 0};
   if (warnings == 0) return;
@@ -126,9 +130,10 @@ __global__ void __launch_bounds__(kColumnThreads)
   for (int k = begin; k < end; ++k) to.out.excess.set(voxel(k), excess_db[k]);
 }
 
-/// `diffraction` has its own kernel over bare ground without terminal clutter.
+/// Models with kernels of their own.
 template <class Model>
-constexpr bool hasOwnKernel = std::is_same_v<Model, propagation::PeExcess>;
+constexpr bool hasOwnKernel =
+    std::is_same_v<Model, propagation::PeExcess> || std::is_same_v<Model, DiffractionExcess>;
 
 template <class Model>
 void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, const ColumnMemory& memory,

@@ -5,7 +5,7 @@
 
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/excess/fill_excess.h"
-#include "propagation/diffraction/column.h"
+#include "propagation/diffraction/diffraction.h"
 
 namespace emscape::emfield::cuda {
 
@@ -30,23 +30,14 @@ struct DiffractionTask {
   Station station;
   GroundPosts ground;
   ExcessOutputs to;
+  propagation::TerminalClutter terminal = {};
+  bool at_crossings = false;  ///< see chord_crossings.h; false: regular posts
 };
-/// Several emitters at once: one thread per column, which keeps its profile and the maxima of its blocks of
-/// posts.
-/// @param ranges  the largest number of posts of a task
-/// @param grid    in device memory; layers that do not count get no excess
-/// @param row     columns along x
-/// @param left    the columns to fill, by task, as fillClear() sets them; null: all
-void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
-                     const std::uint8_t* left, const ScratchMemory& scratch, cudaStream_t stream);
-
-/// The columns of a surface whose receivers are all clear of the smooth earth: each reads its posts once for
-/// every eight heights, and keeps none of them.
-/// @param grid        not tilted, with few layers
-/// @param left        one per task and column; receives 1 if the column was not filled, else 0
-/// @param left_count  in device memory, 0; receives the number of such columns
-void fillClear(const DiffractionTask* tasks, int count, const ExcessGrid& grid, int row, std::uint8_t* left,
-               unsigned* left_count, cudaStream_t stream);
+/// Several emitters at once: one thread per column, which stores no posts.
+/// @param grid   in device memory; layers that do not count get no excess
+/// @param row    columns along x
+void fillDiffraction(const DiffractionTask* tasks, int count, const ExcessGrid& grid, int row,
+                     cudaStream_t stream);
 
 /// `parabolic_equation` of one emitter. Pointers are to device memory.
 struct EquationTask {
@@ -62,7 +53,8 @@ struct EquationTask {
 void fillEquation(const EquationTask& task, const ExcessGrid& grid, int row, const ScratchMemory& scratch,
                   cudaStream_t stream);
 
-/// Any other model: one thread per column, with its own scratch memory.
+/// Any other model: one thread per column, with its own scratch memory. Of `itm` the excess holds that of
+/// fillDiffraction(), without the air.
 /// @param excess        its tables in device memory
 /// @param grid, ground  of device memory
 void fillExcess(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,

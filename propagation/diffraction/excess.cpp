@@ -431,8 +431,8 @@ EMSCAPE_SIMD_CLONES unsigned fillInLanes(const DiffractionExcess& excess, const 
 
 }  // namespace
 
-unsigned DiffractionExcess::fillCpu(const ExcessColumn& column, const ExcessScratch& scratch,
-                                    float* excess_db) const {
+unsigned DiffractionExcess::operator()(const ExcessColumn& column, const ExcessScratch& scratch,
+                                       float* excess_db) const {
   return fillInLanes(*this, column, scratch, excess_db);
 }
 

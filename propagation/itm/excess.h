@@ -50,9 +50,14 @@ struct ItmExcess {
     if (warnings != 0) return warnings;
     return fill(column, scratch, {0, column.count, scratch.other_db}, excess_db);
   }
+  /// @param excess_db  on the device: holds the excess of `diffraction`, NaN over missing terrain
   EMSCAPE_HD unsigned begin(const ExcessColumn& column, const ExcessScratch& scratch,
                             float* excess_db) const {
+#ifdef __CUDA_ARCH__
+    const unsigned warnings = std::isnan(excess_db[column.count - 1]) ? kMissingTerrain : 0;
+#else
     const unsigned warnings = diffraction(column, scratch, excess_db);
+#endif
     if (warnings == 0 && pathWeight(column) > 0) spaceEvenly(column.profile, scratch.even_ground_msl_m);
     return warnings;
   }
