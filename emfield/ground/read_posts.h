@@ -9,6 +9,9 @@ namespace emscape::emfield {
 /// PostReader of the CPU.
 void readPostsCpu(const Station& station, const GroundPosts& ground, const FastInverse& path, int count,
                   float* height_msl_m);
+/// The same of posts first..count - 1.
+void readPostsBetweenCpu(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                         int first, int count, float* height_msl_m);
 
 /// propagation::GrazingSlope of samples.
 /// @param terms  of the samples' ranges
