@@ -58,9 +58,13 @@ struct ShadowTask {
 
   /// Height (m above mean sea level) of the grazing ray over a range.
   EMSCAPE_HD float edgeHeight_m(float slope, double range_m) const {
+    return edgeHeight_m(slope, range_m, geometry().termsAt(range_m));
+  }
+  /// @param terms_of_range  geometry().termsAt() the range
+  EMSCAPE_HD float edgeHeight_m(float slope, double range_m, const RangeTerms<float>& terms_of_range) const {
     if (std::isinf(slope)) return slope;
     if (!(range_m <= 0.5 * kPi * station.earth_radius_m)) return HUGE_VALF;
-    const float edge_m = geometry().heightOn(slope, geometry().termsAt(range_m));
+    const float edge_m = geometry().heightOn(slope, terms_of_range);
     if (!station.refraction.exponential || std::isnan(edge_m)) return edge_m;
     return heightOfImage_m(station, edge_m, range_m);
   }

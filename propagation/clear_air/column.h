@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/math/simd.h"
 #include "emscape/base/host_device.h"
 #include "propagation/clear_air/model.h"
 #include "propagation/clear_air/zones.h"
@@ -38,7 +39,7 @@ struct ClearAirPosts {
     for (int i = 0; i <= last; ++i) {
       surface[i] = terrain_m(i) + (i == 0 || i == last ? Real(0) : Real(clutterOf(i)));
     }
-#pragma omp simd
+    EMSCAPE_SIMD()
     for (int i = 1; i < last; ++i) {
       const Real beyond_m = Real(distance_m - profile.range_m[i]);
       inverse[i] = 1 / beyond_m;
@@ -86,7 +87,7 @@ EMSCAPE_HD ClearAirColumn<Real> clearAirColumn(const ClearAirModel<Real>& model,
   column.rx_ground_m = posts.terrain_m(last);
   TerrainSums sums;
   double v1 = 0, v2 = 0;
-#pragma omp simd reduction(+ : v1, v2)
+  EMSCAPE_SIMD(reduction(+ : v1, v2))
   for (int i = 1; i <= last; ++i) {
     TerrainSums of_interval;
     of_interval.add(profile, i);
@@ -103,7 +104,7 @@ EMSCAPE_HD ClearAirColumn<Real> clearAirColumn(const ClearAirModel<Real>& model,
   };
   Real steepest = column.steepest, horizon = column.horizon_slope, median = column.median_slope,
        ducting = column.ducting_slope;
-#pragma omp simd reduction(max : steepest, horizon, median, ducting)
+  EMSCAPE_SIMD(reduction(max : steepest, horizon, median, ducting))
   for (int i = 1; i < last; ++i) {
     const Real range_m = posts.range_m(i), inverse = 1 / range_m;
     const Real slope = (posts.terrain_m(i) - tx_m) * inverse;
@@ -117,7 +118,7 @@ EMSCAPE_HD ClearAirColumn<Real> clearAirColumn(const ClearAirModel<Real>& model,
     ducting = ducting_slope > ducting ? ducting_slope : ducting;
   }
   int horizon_post = last;
-#pragma omp simd reduction(min : horizon_post)
+  EMSCAPE_SIMD(reduction(min : horizon_post))
   for (int i = 1; i < last; ++i) {
     const int here = horizonSlope(i) >= horizon ? i : last;
     horizon_post = here < horizon_post ? here : horizon_post;

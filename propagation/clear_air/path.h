@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/math/simd.h"
 #include "emscape/base/host_device.h"
 #include "propagation/clear_air/column.h"
 
@@ -48,7 +49,7 @@ EMSCAPE_HD FromReceiver<Real> fromReceiver(const ClearAirModel<Real>& model,
   const int end = posts.count() - 1;
   constexpr Real kNone = -Real(HUGE_VAL);
   Real above = kNone, steepest = kNone, horizon = kNone, median = kNone, ducting = kNone;
-#pragma omp simd reduction(max : above, steepest, horizon, median, ducting)
+  EMSCAPE_SIMD(reduction(max : above, steepest, horizon, median, ducting))
   for (int i = 1; i < end; ++i) {
     const Real range_m = posts.range_m(i), terrain_m = posts.terrain_m(i);
     const Real plain = (terrain_m - rx_m) * inverse_rx[i];
@@ -80,13 +81,13 @@ template <class Real, class ValueOf>
 EMSCAPE_HD int postOfLargest(const ClearAirPosts<Real>& posts, ValueOf valueOf) {
   const int end = posts.count() - 1;
   Real largest = -Real(HUGE_VAL);
-#pragma omp simd reduction(max : largest)
+  EMSCAPE_SIMD(reduction(max : largest))
   for (int i = 1; i < end; ++i) {
     const Real value = valueOf(i);
     largest = value > largest ? value : largest;
   }
   int post = 0;
-#pragma omp simd reduction(max : post)
+  EMSCAPE_SIMD(reduction(max : post))
   for (int i = 1; i < end; ++i) {
     const int here = valueOf(i) >= largest ? i : 0;
     post = here > post ? here : post;
@@ -101,7 +102,7 @@ EMSCAPE_HD Real surfaceNu(const DiffractionModel<Real>& earth, const ClearAirCol
   if (tx_slope >= slope) return bullingtonEdgeNu(earth, column.distance_m, slope, tx_slope, rx_slope);
   const int end = column.posts.count() - 1;
   Real largest = -Real(HUGE_VAL);
-#pragma omp simd reduction(max : largest)
+  EMSCAPE_SIMD(reduction(max : largest))
   for (int i = 1; i < end; ++i) {
     const Real nu = nuOf(earth, column, slope, i, column.posts.surface_m[i]);
     largest = nu > largest ? nu : largest;
@@ -163,7 +164,7 @@ EMSCAPE_HD ClearAirPath<Real> clearAirPath(const ClearAirModel<Real>& model,
   const Real smooth_slope = (path.smooth_m[1] - path.smooth_m[0]) / d;
   const Real smooth_m = path.smooth_m[0];
   Real roughness_m = -Real(HUGE_VAL);
-#pragma omp simd reduction(max : roughness_m)
+  EMSCAPE_SIMD(reduction(max : roughness_m))
   for (int i = first; i <= last; ++i) {
     const Real above_m = posts.terrain_m(i) - smooth_m - smooth_slope * posts.range_m(i);
     roughness_m = above_m > roughness_m ? above_m : roughness_m;

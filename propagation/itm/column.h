@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/math/simd.h"
 #include "propagation/itm/profile.h"
 
 namespace emscape::propagation {
@@ -16,7 +17,7 @@ class ItmColumn {
   ItmColumn(const ItmProfile<float>& profile, float* range_m, float* slope)
       : profile_(profile), range_m_(range_m), slope_(slope) {
     const double step_m = profile.step_m;
-#pragma omp simd
+    EMSCAPE_SIMD()
     for (int i = 0; i <= profile_.intervals; ++i) range_m[i] = static_cast<float>(i * step_m);
     has_every_height_ = itm_detail::hasEveryHeight(profile_);
     mean_height_m_ = has_every_height_ ? itm_detail::meanHeight_m<float>(profile_) : 0;
@@ -35,8 +36,8 @@ class ItmColumn {
       transmitter_ =
           steepest(transmitter_m, half_curvature, [ranges_m = range_m_](int i) { return ranges_m[i]; });
     }
-    const Horizon receiver =
-        steepest(receiver_m, half_curvature, [ranges_m = range_m_, last](int i) { return ranges_m[last - i]; });
+    const Horizon receiver = steepest(receiver_m, half_curvature,
+                                      [ranges_m = range_m_, last](int i) { return ranges_m[last - i]; });
     const float slope = (receiver_m - transmitter_m) / static_cast<float>(length_m);
     const float bulge = static_cast<float>(length_m) * half_curvature;
     itm_detail::HorizonDistances horizons{{length_m, length_m}};
@@ -74,7 +75,7 @@ class ItmColumn {
     float* const slopes = slope_;
     const int last = profile_.intervals;
     float highest = -HUGE_VALF;
-#pragma omp simd reduction(max : highest)
+    EMSCAPE_SIMD(reduction(max : highest))
     for (int i = 1; i < last; ++i) {
       const float range_m = rangeOf(i);
       const float slope = (heights_m[i] - from_m - range_m * range_m * half_curvature) / range_m;
@@ -82,7 +83,7 @@ class ItmColumn {
       highest = slope > highest ? slope : highest;
     }
     int post = last;
-#pragma omp simd reduction(min : post)
+    EMSCAPE_SIMD(reduction(min : post))
     for (int i = 1; i < last; ++i) {
       const int here = slopes[i] == highest ? i : last;
       post = here < post ? here : post;
