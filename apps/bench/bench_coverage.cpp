@@ -30,6 +30,7 @@ struct BenchCoverageOptions {
   double cell_m = 100, height_m = 150, step_m = 100;
   int further = 4, repeats = 3;
   std::string quantity = "detection_probability";
+  std::vector<std::string> models;
 };
 
 /// A step of the computation of maps.
@@ -88,54 +89,111 @@ MapTimes timesOf(const std::shared_ptr<const scenario::Scenario>& scenario,
   return medians;
 }
 
-int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& global) {
-  scenario::Scenario chosen = *scenario::loadScenario(options.scenario, options.edits);
+/// Times of a scenario's map.
+struct MapOfScenario {
+  study::MapGrid grid;
+  long long pixels = 0;  ///< within the area
+  std::string device;
+  double grid_ms = 0;
+  MapTimes first;  ///< of the first height
+  MapTimes all;    ///< of all heights
+
+  double first_ms() const { return grid_ms + first.all_ms(); }
+  /// That each further height adds.
+  double further_ms(int further) const {
+    return further == 0 ? 0 : (all.all_ms() - first.all_ms()) / further;
+  }
+};
+
+/// @param edits  of the scenario
+MapOfScenario mapOf(const BenchCoverageOptions& options, const std::vector<scenario::Edit>& edits,
+                    const GlobalOptions& global) {
+  scenario::Scenario chosen = *scenario::loadScenario(options.scenario, edits);
   chosen.output.quantities = {scenario::info(scenario::quantityFromName(options.quantity)).name};
   chosen.output.radar_look = scenario::RadarAim::target;
   const auto scenario = std::make_shared<const scenario::Scenario>(std::move(chosen));
   const study::MapArea area =
       options.area.empty() ? study::areaOf(scenario->region) : study::parseArea(options.area);
   const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
-  study::MapGrid grid;
+  MapOfScenario map;
   std::vector<double> grids_ms;
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
-    grid = {};
+    map.grid = {};
     Stopwatch watch;
-    grid = study::makeMapGrid(area, options.cell_m, "utm");
+    map.grid = study::makeMapGrid(area, options.cell_m, "utm");
     grids_ms.push_back(watch.lap_ms());
   }
-  const double grid_ms = medianOf(grids_ms);
-  const auto pixels = std::count_if(
-      grid.positions.begin(), grid.positions.end(),
+  map.grid_ms = medianOf(grids_ms);
+  map.pixels = std::count_if(
+      map.grid.positions.begin(), map.grid.positions.end(),
       [](const emfield::Surface::Position& place) { return place.latitude_deg == place.latitude_deg; });
-
-  std::vector<double> heights_m{options.height_m};
-  MapTimes first, all;
-  const std::string device = openOnTarget(global, "float", [&](const ComputeTarget& target) {
-    first = timesOf(scenario, terrain, grid, heights_m, options.repeats, target);
+  map.device = openOnTarget(global, "float", [&](const ComputeTarget& target) {
+    std::vector<double> heights_m{options.height_m};
+    map.first = timesOf(scenario, terrain, map.grid, heights_m, options.repeats, target);
     for (int n = 1; n <= options.further; ++n) heights_m.push_back(options.height_m + n * options.step_m);
-    all = timesOf(scenario, terrain, grid, heights_m, options.repeats, target);
+    map.all = timesOf(scenario, terrain, map.grid, heights_m, options.repeats, target);
     return target.device();
   });
-  const double first_ms = grid_ms + first.all_ms();
-  std::vector<Step> steps{{"pixels", grid_ms, 0}};
+  return map;
+}
+
+void printHead(const BenchCoverageOptions& options, const MapOfScenario& map) {
+  print("device {} ({} threads), map of {} x {} pixels of {:g} m, {} within the area, medians of {}\n\n",
+        map.device, threadCount(), map.grid.width, map.grid.height, map.grid.cell_m, map.pixels,
+        options.repeats);
+}
+
+/// The same map with each of some propagation models.
+int benchModels(const BenchCoverageOptions& options, const GlobalOptions& global) {
+  const auto scenario = scenario::loadScenario(options.scenario, options.edits);
+  Json rows = Json::array();
+  bool has_head = false;
+  for (const std::string& model : options.models) {
+    std::vector<scenario::Edit> edits = options.edits;
+    for (const scenario::Emitter& emitter : scenario->emitters) {
+      edits.push_back(scenario::parseEdit(fmt::format("emitters.{}.propagation={}", emitter.name, model)));
+    }
+    const MapOfScenario map = mapOf(options, edits, global);
+    const double first_ms = map.first_ms(), further_ms = map.further_ms(options.further);
+    if (global.json) {
+      rows.push_back({{"model", model}, {"first_height_ms", first_ms}, {"further_height_ms", further_ms}});
+      continue;
+    }
+    if (!has_head) {
+      printHead(options, map);
+      print("{:20}{:>14}{:>24}\n", "ms", "first height", "each further height");
+      has_head = true;
+    }
+    print("{:20}{:14.0f}{:24.0f}  ({:.0f} % of the first; of {})\n", model, first_ms, further_ms,
+          100 * further_ms / first_ms, options.further);
+  }
+  if (global.json)
+    printJson({{"threads", threadCount()}, {"further_heights", options.further}, {"models", rows}});
+  return 0;
+}
+
+int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& global) {
+  if (!options.models.empty()) return benchModels(options, global);
+  const MapOfScenario map = mapOf(options, options.edits, global);
+  const MapTimes &first = map.first, &all = map.all;
+  const double first_ms = map.first_ms(), further_ms = map.further_ms(options.further);
+  std::vector<Step> steps{{"pixels", map.grid_ms, 0}};
   for (std::size_t n = 0; n < first.steps_ms.size(); ++n) {
     const auto& [name, of_first_ms] = first.steps_ms[n];
     const double added_ms = all.steps_ms[n].second - of_first_ms;
     steps.push_back({name, of_first_ms, options.further == 0 ? 0 : added_ms / options.further});
   }
-  const double further_ms = options.further == 0 ? 0 : (all.all_ms() - first.all_ms()) / options.further;
-  const double pixels_per_s = static_cast<double>(pixels) / (first_ms / 1000);
+  const double pixels_per_s = static_cast<double>(map.pixels) / (first_ms / 1000);
   if (global.json) {
     Json steps_ms, further_steps_ms;
     for (const Step& step : steps) {
       steps_ms[step.name] = step.first_ms;
       further_steps_ms[step.name] = step.further_ms;
     }
-    printJson({{"device", device},
+    printJson({{"device", map.device},
                {"threads", threadCount()},
-               {"map", {grid.width, grid.height}},
-               {"pixels", pixels},
+               {"map", {map.grid.width, map.grid.height}},
+               {"pixels", map.pixels},
                {"further_heights", options.further},
                {"first_height_ms", first_ms},
                {"further_height_ms", further_ms},
@@ -144,8 +202,7 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
                {"further_steps_ms", further_steps_ms}});
     return 0;
   }
-  print("device {} ({} threads), map of {} x {} pixels of {:g} m, {} within the area, medians of {}\n\n",
-        device, threadCount(), grid.width, grid.height, grid.cell_m, pixels, options.repeats);
+  printHead(options, map);
   print("{:20}{:>14}{:>24}\n", "ms", "first height", "each further height");
   print("{:20}{:14.2f}{:24.2f}  ({:.0f} % of the first; of {})\n", "all", first_ms, further_ms,
         100 * further_ms / first_ms, options.further);
@@ -167,7 +224,8 @@ terrain to it); columns to product: the stages of the field; rest: the remainder
 program does once (start of the GPU, database of projections) is in the first repeat, not in the medians.
 
 Example:
-  emscape bench coverage scenarios/jacksboro.yaml --area 36.303,-84.246,10000 --cell 30)");
+  emscape bench coverage scenarios/jacksboro.yaml --area 36.303,-84.246,10000 --cell 30
+  emscape bench coverage scenarios/jacksboro.yaml --models horizon,itm --repeats 1)");
   auto options = std::make_shared<BenchCoverageOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
@@ -181,6 +239,10 @@ Example:
   command->add_option("--height-step", options->step_m, "Distance between heights (m)")
       ->check(CLI::Range(0.1, 1000.0));
   command->add_option("--quantity", options->quantity, "Quantity to map");
+  command
+      ->add_option("--models", options->models,
+                   "Propagation models of all emitters, with commas between them: a row of times for each")
+      ->delimiter(',');
   command->add_option("--repeats", options->repeats, "Computations of each kind; the median is reported")
       ->check(CLI::Range(1, 1000));
   command->callback([options, &global, &action] {

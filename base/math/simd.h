@@ -1,4 +1,4 @@
-/// Versions of a function for wider vector units, chosen when the program starts.
+/// Vector instructions: versions of a function for wider units, chosen when the program starts; and loops.
 #pragma once
 
 /// Placed before a function's definition: g++ compiles it, with everything that is inlined, for AVX-512, AVX2
@@ -9,4 +9,14 @@
 #define EMSCAPE_SIMD_CLONES __attribute__((flatten, target_clones("avx512f", "avx2", "default")))
 #else
 #define EMSCAPE_SIMD_CLONES
+#endif
+
+/// Before a loop whose iterations are independent but for reductions, which are named as OpenMP does:
+/// EMSCAPE_SIMD(reduction(max : largest)). For loops of headers: vector instructions in sources that are
+/// compiled with -fopenmp-simd and EMSCAPE_OPENMP_SIMD, a plain loop elsewhere.
+#if defined(EMSCAPE_OPENMP_SIMD)
+#define EMSCAPE_PRAGMA(...) _Pragma(#__VA_ARGS__)
+#define EMSCAPE_SIMD(...) EMSCAPE_PRAGMA(omp simd __VA_ARGS__)
+#else
+#define EMSCAPE_SIMD(...)
 #endif

@@ -185,6 +185,21 @@ SectorTerrain::SectorTerrain(const Station& station, const GroundPosts& ground, 
   slack_m_.resize(blocks);
 }
 
+void SectorTerrain::readBlock(int block, float aside, float* height_msl_m) const {
+  const SectorChord& chord = chordOf(block);
+  const auto along = [aside](const Parabola<float>* of) {
+    Parabola<float> here;
+    for (int n = 0; n < 3; ++n) here.c[n] = of[0].c[n] + aside * (of[1].c[n] + aside * of[2].c[n]);
+    return here;
+  };
+  const Parabola<float> column = along(chord.column), row = along(chord.row);
+  const float* const parts = posts_.part() + block * kBlock;
+  const int count = std::min(kBlock, posts_read_ - block * kBlock);
+  for (int i = 0; i < count; ++i) {
+    height_msl_m[i] = bilinearHeight(chord.corner_msl_m, rowPosts(), column.at(parts[i]), row.at(parts[i]));
+  }
+}
+
 void SectorTerrain::read(const PathSectors::Azimuth& middle, double half_width_rad, int posts) {
   const double sine = std::sin(half_width_rad), cosine = std::cos(half_width_rad);
   azimuths_[0] = {middle.sine * cosine - middle.cosine * sine, middle.cosine * cosine + middle.sine * sine};

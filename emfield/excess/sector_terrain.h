@@ -96,6 +96,9 @@ class SectorTerrain {
   const float* slack_m() const { return slack_m_.data(); }
   const SectorChord& chord(int index) const { return chords_[index]; }
   int rowPosts() const { return raster_->columns; }
+  /// Reads the heights of the known posts of a block along one path.
+  /// @param aside  of the path in the sector, -1..1
+  void readBlock(int block, float aside, float* height_msl_m) const;
 
  private:
   int setChord(int index, int end_post);

@@ -56,20 +56,25 @@ struct ShadowTask {
     return -HUGE_VALF;
   }
 
+  /// Height (m above mean sea level) of the grazing ray over a range.
+  EMSCAPE_HD float edgeHeight_m(float slope, double range_m) const {
+    return edgeHeight_m(slope, range_m, geometry().termsAt(range_m));
+  }
+  /// @param terms_of_range  geometry().termsAt() the range
+  EMSCAPE_HD float edgeHeight_m(float slope, double range_m, const RangeTerms<float>& terms_of_range) const {
+    if (std::isinf(slope)) return slope;
+    if (!(range_m <= 0.5 * kPi * station.earth_radius_m)) return HUGE_VALF;
+    const float edge_m = geometry().heightOn(slope, terms_of_range);
+    if (!station.refraction.exponential || std::isnan(edge_m)) return edge_m;
+    return heightOfImage_m(station, edge_m, range_m);
+  }
+
  private:
   template <class SlopeTo>
   EMSCAPE_HD float slopeBefore(const FastInverse& point, const SlopeTo& slopeTo) const {
     if (ground.is_smooth) return propagation::smoothGrazingSlope(geometry(), point.distance_m);
     const int before = ground.lastBefore(point.distance_m);
     return before == 0 ? -HUGE_VALF : slopeTo(point, before + 1);
-  }
-  /// Height (m above mean sea level) of the grazing ray over a range.
-  EMSCAPE_HD float edgeHeight_m(float slope, double range_m) const {
-    if (std::isinf(slope)) return slope;
-    if (!(range_m <= 0.5 * kPi * station.earth_radius_m)) return HUGE_VALF;
-    const float edge_m = geometry().heightOn(slope, geometry().termsAt(range_m));
-    if (!station.refraction.exponential || std::isnan(edge_m)) return edge_m;
-    return heightOfImage_m(station, edge_m, range_m);
   }
 };
 

@@ -78,7 +78,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
     times.excess_ms += ms;
     times.of_part_ms += ms;
   };
-  if (model.casts_shadow) findShadowEdgesCpu(station, ground, grid, shadow_edge_m_.data());
+  if (model.casts_shadow) findShadowEdgesCpu(station, ground, grid, bounds, shadow_edge_m_.data());
   endPart();
   ExcessStore store;
   if (hasExcess(scenario, emitter)) {

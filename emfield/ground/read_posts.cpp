@@ -105,13 +105,18 @@ void insert(const double* range_m, const float* height_msl_m, int count, int oth
 
 void readPostsCpu(const Station& station, const GroundPosts& ground, const FastInverse& path, int count,
                   float* height_msl_m) {
+  readPostsBetweenCpu(station, ground, path, 0, count, height_msl_m);
+}
+
+void readPostsBetweenCpu(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                         int first, int count, float* height_msl_m) {
   if (ground.is_smooth) {
-    std::fill_n(height_msl_m, count, 0.0f);
+    std::fill(height_msl_m + first, height_msl_m + count, 0.0f);
     return;
   }
   TerrainWalk walk(station, ground.terrain, path);
   const double* const ranges_m = ground.ranges_m;
-  for (int begin = 0; begin < count;) {
+  for (int begin = first; begin < count;) {
     const TerrainChord& chord = walk.chordAt(ranges_m[begin]);
     const int beyond = ground.lastBefore(walk.endOfChord_m(ranges_m[begin])) + 1;
     const int end = std::clamp(beyond, begin + 1, count);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/math/simd.h"
 #include "emscape/base/host_device.h"
 #include "propagation/clear_air/model.h"
 #include "propagation/clear_air/zones.h"
@@ -33,13 +34,16 @@ struct ClearAirPosts {
   EMSCAPE_HD void fill(Real wavelength_m, ClutterOf clutterOf) const {
     const int last = count() - 1;
     const double distance_m = profile.range_m[last];
+    const Real factor = 2 * Real(distance_m) / wavelength_m;
+    Real *const surface = surface_m, *const inverse = inverse_rx, *const nu = nu_per_m;
     for (int i = 0; i <= last; ++i) {
-      surface_m[i] = terrain_m(i);
-      if (i == 0 || i == last) continue;
-      surface_m[i] += Real(clutterOf(i));
+      surface[i] = terrain_m(i) + (i == 0 || i == last ? Real(0) : Real(clutterOf(i)));
+    }
+    EMSCAPE_SIMD()
+    for (int i = 1; i < last; ++i) {
       const Real beyond_m = Real(distance_m - profile.range_m[i]);
-      inverse_rx[i] = 1 / beyond_m;
-      nu_per_m[i] = std::sqrt(2 * Real(distance_m) / (wavelength_m * range_m(i) * beyond_m));
+      inverse[i] = 1 / beyond_m;
+      nu[i] = std::sqrt(factor / (range_m(i) * beyond_m));
     }
   }
 };
@@ -82,23 +86,48 @@ EMSCAPE_HD ClearAirColumn<Real> clearAirColumn(const ClearAirModel<Real>& model,
   column.tx_m = model.median.raised_m(tx_msl_m - column.base_msl_m, Real(0));
   column.rx_ground_m = posts.terrain_m(last);
   TerrainSums sums;
+  double v1 = 0, v2 = 0;
+  EMSCAPE_SIMD(reduction(+ : v1, v2))
   for (int i = 1; i <= last; ++i) {
-    sums.add(profile, i);
-    if (i == last) break;
-    const Real range_m = posts.range_m(i), inverse = 1 / range_m;
-    const Real slope = (posts.terrain_m(i) - column.tx_m) * inverse;
-    const Real surface_slope = (posts.surface_m[i] - column.tx_m) * inverse;
-    const Real horizon_slope = slope - model.median.half_curvature * range_m;
-    const Real median_slope = surface_slope - model.median.half_curvature * range_m;
-    const Real ducting_slope = surface_slope - model.ducting.half_curvature * range_m;
-    if (horizon_slope > column.horizon_slope) {
-      column.horizon_slope = horizon_slope;
-      column.horizon = i;
-    }
-    column.steepest = slope > column.steepest ? slope : column.steepest;
-    column.median_slope = median_slope > column.median_slope ? median_slope : column.median_slope;
-    column.ducting_slope = ducting_slope > column.ducting_slope ? ducting_slope : column.ducting_slope;
+    TerrainSums of_interval;
+    of_interval.add(profile, i);
+    v1 += of_interval.v1;
+    v2 += of_interval.v2;
   }
+  sums.v1 = v1;
+  sums.v2 = v2;
+  const Real tx_m = column.tx_m, median_curvature = model.median.half_curvature,
+             ducting_curvature = model.ducting.half_curvature;
+  const auto horizonSlope = [&](int i) {
+    const Real range_m = posts.range_m(i);
+    return (posts.terrain_m(i) - tx_m) * (1 / range_m) - median_curvature * range_m;
+  };
+  Real steepest = column.steepest, horizon = column.horizon_slope, median = column.median_slope,
+       ducting = column.ducting_slope;
+  EMSCAPE_SIMD(reduction(max : steepest, horizon, median, ducting))
+  for (int i = 1; i < last; ++i) {
+    const Real range_m = posts.range_m(i), inverse = 1 / range_m;
+    const Real slope = (posts.terrain_m(i) - tx_m) * inverse;
+    const Real surface_slope = (posts.surface_m[i] - tx_m) * inverse;
+    const Real horizon_slope = horizonSlope(i);
+    const Real median_slope = surface_slope - median_curvature * range_m;
+    const Real ducting_slope = surface_slope - ducting_curvature * range_m;
+    horizon = horizon_slope > horizon ? horizon_slope : horizon;
+    steepest = slope > steepest ? slope : steepest;
+    median = median_slope > median ? median_slope : median;
+    ducting = ducting_slope > ducting ? ducting_slope : ducting;
+  }
+  int horizon_post = last;
+  EMSCAPE_SIMD(reduction(min : horizon_post))
+  for (int i = 1; i < last; ++i) {
+    const int here = horizonSlope(i) >= horizon ? i : last;
+    horizon_post = here < horizon_post ? here : horizon_post;
+  }
+  column.steepest = steepest;
+  column.horizon_slope = horizon;
+  column.horizon = horizon_post < last ? horizon_post : 0;
+  column.median_slope = median;
+  column.ducting_slope = ducting;
   column.median_slope += model.median.half_curvature * column.distance_m;
   column.ducting_slope += model.ducting.half_curvature * column.distance_m;
   column.trend_m[0] = Real(sums.start_m(distance_m));

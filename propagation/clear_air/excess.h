@@ -29,25 +29,27 @@ struct ClearAirExcess {
   ClearAirGround ground;
   float tx_msl_m = 0;
 
+  /// On the CPU, by vector instructions.
   /// @accuracy heights between evaluations: 99 % within 0.1 dB of the model
-  EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch,
-                                 float* excess_db) const {
-    const unsigned warnings = begin(column, scratch, excess_db);
-    if (warnings != 0) return warnings;
-    return fill(column, scratch, {0, column.count, scratch.other_db}, excess_db);
-  }
+  unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db) const;
+  // The same on a device.
   EMSCAPE_HD unsigned begin(const ExcessColumn& column, const ExcessScratch& scratch,
                             float* excess_db) const {
     const TerrainProfile& profile = column.profile;
-    float unknown = 0;  // or NaN
-    for (int i = 0; i < profile.count; ++i) unknown += 0 * profile.height_msl_m[i];
-    if (!(unknown == 0)) {
+    int unknown = 0;
+    for (int i = 0; i < profile.count; ++i) {
+      unknown |= profile.height_msl_m[i] == profile.height_msl_m[i] ? 0 : 1;
+    }
+    if (unknown != 0) {
       for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
       return kMissingTerrain;
     }
-    postsOf(column, scratch).fill(model.clear_air.median.earth.wavelength_m, [&](int post) {
-      return ground.clutterAt(profile, post);
-    });
+    const float wavelength_m = model.clear_air.median.earth.wavelength_m;
+    if (ground.hasClutter(profile)) {
+      postsOf(column, scratch).fill(wavelength_m, [&](int post) { return ground.clutterAt(profile, post); });
+    } else {
+      postsOf(column, scratch).fill(wavelength_m, [](int) { return 0.0f; });
+    }
     return 0;
   }
   EMSCAPE_HD unsigned fill(const ExcessColumn& column, const ExcessScratch& scratch, const ColumnPart& part,

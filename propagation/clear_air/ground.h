@@ -15,6 +15,14 @@ constexpr double kCoastalDistance_m = 50e3;
 /// Zones by the land cover and the terrain's heights: TerrainProfile::isSea(); land up to kCoastalHeight_m
 /// high and within kCoastalDistance_m of a sea post of the path is coastal land; the rest is inland.
 EMSCAPE_HD inline PathZones zonesByHeight(const TerrainProfile& profile) {
+  int has_sea = 0;
+  for (int i = 0; i < profile.count; ++i) has_sea |= profile.isSea(i) ? 1 : 0;
+  if (has_sea == 0) {
+    const double length_m = profile.range_m[profile.count - 1];
+    PathZoneSums sums(length_m);
+    sums.add(PathZone::inland, 0, length_m);
+    return sums.zones();
+  }
   int next_sea = 0;
   double last_sea_m = -2 * kCoastalDistance_m;
   return sumZones(profile, [&](int i) {
@@ -59,6 +67,10 @@ struct ClearAirGround {
   float clutter_height_m = 0;     ///< on land of unknown cover
   double clutter_distance_m = 0;  ///< min distance of clutter from either antenna
 
+  /// False if there is none on a profile.
+  EMSCAPE_HD bool hasClutter(const TerrainProfile& profile) const {
+    return profile.cover_m != nullptr || clutter_height_m != 0;
+  }
   EMSCAPE_HD float clutterAt(const TerrainProfile& profile, int post) const {
     const bool is_sea = zone == ClearAirZone::sea || (zone == ClearAirZone::by_height && profile.isSea(post));
     return is_sea || isNearTerminal(profile, post, clutter_distance_m)

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/math/simd.h"
 #include "emscape/base/host_device.h"
 #include "propagation/clear_air/column.h"
 
@@ -38,58 +39,32 @@ struct FromReceiver {
   Real ducting_slope;
 };
 
-/// Posts per step of a loop: independent maxima, so that the compiler can use SIMD.
-constexpr int kLanes = 8;
-
-/// Maximum of a function of the posts between the ends, in lanes.
-template <class Real>
-struct LaneMaximum {
-  Real lane[kLanes];
-
-  EMSCAPE_HD LaneMaximum() {
-    EMSCAPE_UNROLL
-    for (int i = 0; i < kLanes; ++i) lane[i] = -Real(HUGE_VAL);
-  }
-  EMSCAPE_HD void take(int at, Real value) { lane[at] = value > lane[at] ? value : lane[at]; }
-  EMSCAPE_HD Real largest() const {
-    Real value = lane[0];
-    EMSCAPE_UNROLL
-    for (int i = 1; i < kLanes; ++i) value = lane[i] > value ? lane[i] : value;
-    return value;
-  }
-};
-
-/// Visits all posts between the ends, kLanes at a time.
-/// @param visit  (int post, int lane)
-template <class Real, class Visit>
-EMSCAPE_HD void visitPosts(const ClearAirPosts<Real>& posts, Visit visit) {
-  const int end = posts.count() - 1;
-  int i = 1;
-  for (; i + kLanes <= end; i += kLanes) {
-    EMSCAPE_UNROLL
-    for (int lane = 0; lane < kLanes; ++lane) visit(i + lane, lane);
-  }
-  for (; i < end; ++i) visit(i, 0);
-}
-
 template <class Real>
 EMSCAPE_HD FromReceiver<Real> fromReceiver(const ClearAirModel<Real>& model,
                                            const ClearAirColumn<Real>& column, Real rx_m, Real slope) {
   const ClearAirPosts<Real>& posts = column.posts;
   const Real median_curvature = model.median.half_curvature, ducting_curvature = model.ducting.half_curvature;
-  LaneMaximum<Real> above, steepest, horizon, median, ducting;
-  visitPosts(posts, [&](int i, int lane) {
+  const Real tx_m = column.tx_m;
+  const Real *const surface_m = posts.surface_m, *const inverse_rx = posts.inverse_rx;
+  const int end = posts.count() - 1;
+  constexpr Real kNone = -Real(HUGE_VAL);
+  Real above = kNone, steepest = kNone, horizon = kNone, median = kNone, ducting = kNone;
+  EMSCAPE_SIMD(reduction(max : above, steepest, horizon, median, ducting))
+  for (int i = 1; i < end; ++i) {
     const Real range_m = posts.range_m(i), terrain_m = posts.terrain_m(i);
-    const Real plain = (terrain_m - rx_m) * posts.inverse_rx[i];
-    const Real surface = (posts.surface_m[i] - rx_m) * posts.inverse_rx[i];
-    above.take(lane, terrain_m - column.tx_m - slope * range_m);
-    steepest.take(lane, plain);
-    horizon.take(lane, plain + median_curvature * range_m);
-    median.take(lane, surface + median_curvature * range_m);
-    ducting.take(lane, surface + ducting_curvature * range_m);
-  });
-  return {above.largest(), steepest.largest(), horizon.largest() - median_curvature * column.distance_m,
-          median.largest(), ducting.largest()};
+    const Real plain = (terrain_m - rx_m) * inverse_rx[i];
+    const Real surface = (surface_m[i] - rx_m) * inverse_rx[i];
+    const Real height = terrain_m - tx_m - slope * range_m;
+    const Real plain_median = plain + median_curvature * range_m;
+    const Real surface_median = surface + median_curvature * range_m;
+    const Real surface_ducting = surface + ducting_curvature * range_m;
+    above = height > above ? height : above;
+    steepest = plain > steepest ? plain : steepest;
+    horizon = plain_median > horizon ? plain_median : horizon;
+    median = surface_median > median ? surface_median : median;
+    ducting = surface_ducting > ducting ? surface_ducting : ducting;
+  }
+  return {above, steepest, horizon - median_curvature * column.distance_m, median, ducting};
 }
 
 /// nu of a post for a line of sight.
@@ -104,14 +79,18 @@ EMSCAPE_HD Real nuOf(const DiffractionModel<Real>& earth, const ClearAirColumn<R
 /// The last of the posts between the ends at which a function has its largest value; 0: there is none.
 template <class Real, class ValueOf>
 EMSCAPE_HD int postOfLargest(const ClearAirPosts<Real>& posts, ValueOf valueOf) {
+  const int end = posts.count() - 1;
   Real largest = -Real(HUGE_VAL);
-  int post = 0;
-  for (int i = 1; i < posts.count() - 1; ++i) {
+  EMSCAPE_SIMD(reduction(max : largest))
+  for (int i = 1; i < end; ++i) {
     const Real value = valueOf(i);
-    if (value >= largest) {
-      largest = value;
-      post = i;
-    }
+    largest = value > largest ? value : largest;
+  }
+  int post = 0;
+  EMSCAPE_SIMD(reduction(max : post))
+  for (int i = 1; i < end; ++i) {
+    const int here = valueOf(i) >= largest ? i : 0;
+    post = here > post ? here : post;
   }
   return post;
 }
@@ -121,11 +100,14 @@ template <class Real>
 EMSCAPE_HD Real surfaceNu(const DiffractionModel<Real>& earth, const ClearAirColumn<Real>& column, Real slope,
                           Real tx_slope, Real rx_slope) {
   if (tx_slope >= slope) return bullingtonEdgeNu(earth, column.distance_m, slope, tx_slope, rx_slope);
-  LaneMaximum<Real> nu;
-  visitPosts(column.posts, [&](int i, int lane) {
-    nu.take(lane, nuOf(earth, column, slope, i, column.posts.surface_m[i]));
-  });
-  return nu.largest();
+  const int end = column.posts.count() - 1;
+  Real largest = -Real(HUGE_VAL);
+  EMSCAPE_SIMD(reduction(max : largest))
+  for (int i = 1; i < end; ++i) {
+    const Real nu = nuOf(earth, column, slope, i, column.posts.surface_m[i]);
+    largest = nu > largest ? nu : largest;
+  }
+  return largest;
 }
 
 }  // namespace clear_air_detail
@@ -180,11 +162,14 @@ EMSCAPE_HD ClearAirPath<Real> clearAirPath(const ClearAirModel<Real>& model,
   path.ducting_height_m[0] = tx_m - path.smooth_m[0];
   path.ducting_height_m[1] = path.rx_m - path.smooth_m[1];
   const Real smooth_slope = (path.smooth_m[1] - path.smooth_m[0]) / d;
-  path.roughness_m = -Real(HUGE_VAL);
+  const Real smooth_m = path.smooth_m[0];
+  Real roughness_m = -Real(HUGE_VAL);
+  EMSCAPE_SIMD(reduction(max : roughness_m))
   for (int i = first; i <= last; ++i) {
-    const Real above_m = posts.terrain_m(i) - path.smooth_m[0] - smooth_slope * posts.range_m(i);
-    path.roughness_m = above_m > path.roughness_m ? above_m : path.roughness_m;
+    const Real above_m = posts.terrain_m(i) - smooth_m - smooth_slope * posts.range_m(i);
+    roughness_m = above_m > roughness_m ? above_m : roughness_m;
   }
+  path.roughness_m = roughness_m;
 
   path.median_nu = surfaceNu(model.median, column, path.slope, column.median_slope, found.median_slope);
   path.ducting_nu = surfaceNu(model.ducting, column, path.slope, column.ducting_slope, found.ducting_slope);

@@ -254,25 +254,32 @@ EMSCAPE_HD void finish(const ItmLink<Real>& link, const ItmQuantiles<Real>& quan
 }  // namespace itm_detail
 
 /// Loss over a terrain profile.
+/// @param statistics  itm_detail::ProfileStatistics of the profile, or the like
 /// @accuracy double: within 0.001 dB of the NTIA's implementation; float: within 0.01 dB of double
 /// Safe to call from any thread; nothing is allocated.
-template <class Real, class Height>
+template <class Real, class Height, class Statistics>
 EMSCAPE_HD ItmResult<Real> itmPointToPoint(const ItmProfile<Height>& profile, const ItmLink<Real>& link,
-                                           const ItmQuantiles<Real>& quantiles) {
+                                           const ItmQuantiles<Real>& quantiles, Statistics& statistics) {
   using namespace itm_detail;
   ItmResult<Real> result;
   if (const ItmStatus status = checkInput(link, quantiles, result.warnings); status != ItmStatus::done) {
     return refuse(result, status);
   }
-  if (!(profile.intervals >= 2 && profile.step_m > 0) || !hasEveryHeight(profile)) {
+  if (!(profile.intervals >= 2 && profile.step_m > 0) || !statistics.hasEveryHeight()) {
     return refuse(result, ItmStatus::profile);
   }
   for (int end = 0; end < 2; ++end) result.path.terminal[end].height_agl_m = link.height_agl_m[end];
   itmSetMedium(result.path, link.frequency_hz, link.vertical_polarization, link.relative_permittivity,
-               link.conductivity_s_m, link.sea_level_refractivity, meanHeight_m<Real>(profile));
-  itmSetTerrain(result.path, profile);
+               link.conductivity_s_m, link.sea_level_refractivity, statistics.meanHeight_m());
+  itmSetTerrain(result.path, profile, statistics);
   finish(link, quantiles, result);
   return result;
+}
+template <class Real, class Height>
+EMSCAPE_HD ItmResult<Real> itmPointToPoint(const ItmProfile<Height>& profile, const ItmLink<Real>& link,
+                                           const ItmQuantiles<Real>& quantiles) {
+  itm_detail::ProfileStatistics<Real, Height> statistics{profile};
+  return itmPointToPoint(profile, link, quantiles, statistics);
 }
 
 /// Loss over terrain that is described only by its irregularity.

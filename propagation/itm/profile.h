@@ -312,16 +312,33 @@ EMSCAPE_HD void setBeyondHorizon(const ItmProfile<Height>& profile, double begin
       larger(Real(0), Real(profile.heights_msl_m[profile.intervals]) - at_end_m);
 }
 
+/// Statistics of a profile, computed at each call; ItmColumn keeps them for several receivers.
+template <class Real, class Height>
+struct ProfileStatistics {
+  const ItmProfile<Height>& profile;
+
+  EMSCAPE_HD bool hasEveryHeight() const { return itm_detail::hasEveryHeight(profile); }
+  EMSCAPE_HD Real meanHeight_m() const { return itm_detail::meanHeight_m<Real>(profile); }
+  EMSCAPE_HD HorizonDistances findHorizons(ItmPath<Real>& path) const {
+    return itm_detail::findHorizons(profile, path);
+  }
+  EMSCAPE_HD Real irregularityBetween_m(double begin_m, double end_m) const {
+    return itm_detail::irregularityBetween_m<Real>(profile, begin_m, end_m);
+  }
+};
+
 }  // namespace itm_detail
 
 /// Sets horizons, irregularity and effective heights from a profile. The path's heights above ground and its
 /// effective earth must be set.
-template <class Real, class Height>
-EMSCAPE_HD void itmSetTerrain(ItmPath<Real>& path, const ItmProfile<Height>& profile) {
+/// @param statistics  ProfileStatistics of the profile, or the like
+template <class Real, class Height, class Statistics>
+EMSCAPE_HD void itmSetTerrain(ItmPath<Real>& path, const ItmProfile<Height>& profile,
+                              Statistics& statistics) {
   using namespace itm_detail;
   path.profile_is_known = true;
   path.distance_m = Real(profile.length_m());
-  const HorizonDistances horizons = findHorizons(profile, path);
+  const HorizonDistances horizons = statistics.findHorizons(path);
   // terrain near a terminal is left out: up to 15 structural heights or a tenth of its horizon distance,
   // whichever is less
   const auto foreground_m = [&](int end) {
@@ -331,7 +348,7 @@ EMSCAPE_HD void itmSetTerrain(ItmPath<Real>& path, const ItmProfile<Height>& pro
   };
   const double begin_m = foreground_m(0);
   const double end_m = profile.length_m() - foreground_m(1);
-  path.irregularity_m = irregularityBetween_m<Real>(profile, begin_m, end_m);
+  path.irregularity_m = statistics.irregularityBetween_m(begin_m, end_m);
   if (horizons.distance_m[0] + horizons.distance_m[1] > 1.5 * profile.length_m()) {
     setLineOfSight(profile, begin_m, end_m, path);
   } else {

@@ -7,5 +7,7 @@
 namespace emscape::propagation {
 
 using P1812Excess = ClearAirExcess<P1812Model<float>>;
+template <>
+unsigned P1812Excess::operator()(const ExcessColumn&, const ExcessScratch&, float* excess_db) const;
 
 }  // namespace emscape::propagation

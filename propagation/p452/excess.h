@@ -7,5 +7,7 @@
 namespace emscape::propagation {
 
 using P452Excess = ClearAirExcess<P452Model<float>>;
+template <>
+unsigned P452Excess::operator()(const ExcessColumn&, const ExcessScratch&, float* excess_db) const;
 
 }  // namespace emscape::propagation

@@ -21,6 +21,15 @@ double layersTo(double height_km) {
   return std::log(1e4 * height_km * std::expm1(kGrowth) + 1) / kGrowth + 1;
 }
 
+/// Angle from one direction to a steeper one, both with a level component of the same size.
+double angleBetween(double level, double rising, double rising_more) {
+  constexpr double kSmall = 0.01;
+  const double tangent = level * (rising_more - rising) / (level * level + rising * rising_more);
+  if (!(std::fabs(tangent) < kSmall)) return std::atan(tangent);
+  const double square = tangent * tangent;
+  return tangent * (1 - square * (1.0 / 3 - square / 5));
+}
+
 }  // namespace
 
 P528Atmosphere::P528Atmosphere(double frequency_hz) {
@@ -59,15 +68,16 @@ P528Ray P528Atmosphere::traceUp(double lower_km, double upper_km, double elevati
   // Snell's law in spherical layers: n r cos(elevation) is constant
   const double invariant_km =
       air.refractive_index * (kP528EarthRadius_km + lower_km) * std::cos(elevation_rad);
-  const auto elevationAt = [invariant_km](double n_r_km) {
-    return std::atan2(std::sqrt(std::max(0.0, (n_r_km - invariant_km) * (n_r_km + invariant_km))),
-                      invariant_km);
+  // n r sin(elevation)
+  const auto risingAt = [invariant_km](double n_r_km) {
+    return std::sqrt(std::max(0.0, (n_r_km - invariant_km) * (n_r_km + invariant_km)));
   };
+  double upper_rising_km = 0;
   for (int layer = first; layer < last; ++layer) {
     const double radius_km = kP528EarthRadius_km + height_km;
-    const double entry_rad = elevationAt(air.refractive_index * radius_km);
-    if (layer > first) ray.bending_rad += ray.upper_elevation_rad - entry_rad;
-    const double rise_km = radius_km * std::sin(entry_rad);
+    const double rising_km = risingAt(air.refractive_index * radius_km);
+    if (layer > first) ray.bending_rad += angleBetween(invariant_km, rising_km, upper_rising_km);
+    const double rise_km = rising_km / air.refractive_index;
     // (17)
     const double length_km =
         thickness_km * (2 * radius_km + thickness_km) /
@@ -75,10 +85,11 @@ P528Ray P528Atmosphere::traceUp(double lower_km, double upper_km, double elevati
     ray.length_km += length_km;
     ray.absorption_db += length_km * air.absorption_db_km;
     height_km += thickness_km;
-    ray.upper_elevation_rad = elevationAt(air.refractive_index * (kP528EarthRadius_km + height_km));
+    upper_rising_km = risingAt(air.refractive_index * (kP528EarthRadius_km + height_km));
     thickness_km *= std::exp(kGrowth);
     air = airAt(height_km + thickness_km / 2);
   }
+  ray.upper_elevation_rad = std::atan2(upper_rising_km, invariant_km);
   return ray;
 }
 

@@ -3,21 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <optional>
 
 #include "emscape/base/parallel.h"
 #include "propagation/p528/p528.h"
+#include "propagation/p528/point_table.h"
 
 namespace emscape::propagation {
 namespace {
 
 constexpr int kHeights = 48;
 constexpr int kRanges = 256;
-/// Range over the sum of both heights to which a ray is steep: at larger ones the reflection changes slowly.
-constexpr double kSteepRatio = 3;
+}  // namespace
 
-/// The inverse of P528Excess::positionOf (m), by bisection.
-double rangeAt(double position, double horizon_m, double steep_m, double farthest_ratio) {
+// By bisection.
+double p528RangeAt(double position, double horizon_m, double steep_m, double farthest_ratio) {
   constexpr int kBisections = 45;
   double nearer_m = 0, farther_m = farthest_ratio * horizon_m;
   for (int i = 0; i < kBisections; ++i) {
@@ -27,8 +26,6 @@ double rangeAt(double position, double horizon_m, double steep_m, double farthes
   }
   return nearer_m;
 }
-
-}  // namespace
 
 P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables) {
   const EmitterInputs& emitter = inputs.emitter;
@@ -63,11 +60,11 @@ P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables) {
     for (int h = begin; h < end; ++h) {
       const double root = lowest_root + h * step_root;
       horizons_m[h] = static_cast<float>(curves[h].horizon_m());
-      steep_m[h] = static_cast<float>(kSteepRatio * (allowed(tx_m) + allowed(root * root)));
+      steep_m[h] = static_cast<float>(kP528SteepRatio * (allowed(tx_m) + allowed(root * root)));
       for (int r = 0; r < kRanges; ++r) {
         const double range_m =
-            rangeAt(static_cast<double>(r) / (kRanges - 1), curves[h].horizon_m(),
-                    static_cast<double>(steep_m[h]), static_cast<double>(result.farthest_ratio));
+            p528RangeAt(static_cast<double>(r) / (kRanges - 1), curves[h].horizon_m(),
+                        static_cast<double>(steep_m[h]), static_cast<double>(result.farthest_ratio));
         const P528Loss loss = curves[h].at(range_m, emitter.settings.p528.time_percent);
         excess[static_cast<std::size_t>(h) * kRanges + r] =
             static_cast<float>(loss.loss_db - loss.free_space_db);
@@ -79,40 +76,35 @@ P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables) {
 }
 
 P528Excess p528ExcessAt(const PathInputs& inputs, const PathPoints& points, std::vector<float>& tables) {
-  constexpr int kPositionsAtOnce = 64;
-  const EmitterInputs& emitter = inputs.emitter;
   const auto allowed = [&](double height_msl_m) {
     return std::clamp(height_msl_m - inputs.surface_msl_m, kP528Height.min, kP528Height.max);
   };
-  const double tx_m = allowed(inputs.site.height_msl_m);
-  const auto atmosphere = std::make_shared<const P528Atmosphere>(emitter.frequency_hz);
   const std::size_t positions = points.range_m.size();
   P528Excess result;
   result.surface_msl_m = inputs.surface_msl_m;
   result.position_count = positions;
   tables.assign(positions * points.above_base_m.size(), 0);
-  parallelFor(
-      static_cast<int>((positions + kPositionsAtOnce - 1) / kPositionsAtOnce), 1, [&](int begin, int end) {
-        const std::size_t first = static_cast<std::size_t>(begin) * kPositionsAtOnce;
-        const std::size_t last = std::min(positions, static_cast<std::size_t>(end) * kPositionsAtOnce);
-        for (std::size_t k = 0; k < points.above_base_m.size(); ++k) {
-          std::optional<P528Curve> curve;  // neighbours above the sea have the same
-          double of_m = 0;
-          for (std::size_t p = first; p < last; ++p) {
-            if (std::isnan(points.range_m[p])) continue;
-            const double height_m =
-                allowed(points.base_msl_m[p] + static_cast<double>(points.above_base_m[k]));
-            if (!curve || height_m != of_m) {
-              curve.emplace(atmosphere, emitter.frequency_hz, tx_m, height_m,
-                            emitter.polarization != Polarization::horizontal);
-              of_m = height_m;
-            }
-            const P528Loss loss = curve->at(points.range_m[p], emitter.settings.p528.time_percent);
-            tables[k * positions + p] = static_cast<float>(loss.loss_db - loss.free_space_db);
-          }
-        }
-      });
+  double lowest_m = HUGE_VAL, highest_m = -HUGE_VAL, farthest_m = 1;
+  for (std::size_t p = 0; p < positions; ++p) {
+    if (std::isnan(points.range_m[p])) continue;
+    lowest_m = std::min(lowest_m, points.base_msl_m[p]);
+    highest_m = std::max(highest_m, points.base_msl_m[p]);
+    farthest_m = std::max(farthest_m, points.range_m[p]);
+  }
   result.tables = tables.data();
+  if (!(lowest_m <= highest_m)) return result;  // all are left out
+  P528PointTable table(inputs.emitter, allowed(inputs.site.height_msl_m),
+                       allowed(lowest_m + static_cast<double>(points.above_base_m.front())),
+                       allowed(highest_m + static_cast<double>(points.above_base_m.back())), farthest_m);
+  for (std::size_t k = 0; k < points.above_base_m.size(); ++k) {
+    const auto above_m = static_cast<double>(points.above_base_m[k]);
+    table.fill(
+        positions,
+        [&](std::size_t p) {
+          return P528PointTable::Point{points.range_m[p], allowed(points.base_msl_m[p] + above_m)};
+        },
+        tables.data() + k * positions);
+  }
   return result;
 }
 

@@ -1,5 +1,5 @@
 /// Excess of the model `p528`: in volumes from curves computed once for an emitter's height, over surfaces
-/// computed at every point.
+/// from a table that is as fine as the points need.
 #pragma once
 
 #include <cmath>
@@ -83,9 +83,15 @@ struct P528Excess {
   }
 };
 
+/// Range over the sum of both heights to which a ray is steep: at larger ones the reflection changes slowly.
+constexpr double kP528SteepRatio = 3;
+/// The inverse of P528Excess::positionOf (m).
+double p528RangeAt(double position, double horizon_m, double steep_m, double farthest_ratio);
+
 /// @param tables  receives the tables to which the result points
 P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables);
-/// The same over a surface, with a separate curve for every point.
+/// The same over a surface: the excess of every point.
+/// @accuracy see P528PointTable
 P528Excess p528ExcessAt(const PathInputs& inputs, const PathPoints& points, std::vector<float>& tables);
 
 }  // namespace emscape::propagation

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
@@ -22,6 +23,10 @@ constexpr double kNearest_km = 0.001;
 
 double square(double x) {
   return x * x;
+}
+
+void require(const ModelLimit& limit, double value) {
+  if (!limit.holds(value)) throw Error(ErrorCode::bad_input, "p528: " + outsideMessage(limit, value));
 }
 
 double freeSpace_db(double frequency_mhz, double length_km) {
@@ -109,20 +114,35 @@ struct P528Curve::Scatter {
   double angle_rad = 0;           ///< theta_s
 };
 
+/// [4]
+P528Terminal p528Terminal(const P528Atmosphere& atmosphere, double height_m) {
+  require(kP528Height, height_m);
+  const double height_km = height_m / 1000;
+  P528Terminal terminal;
+  terminal.height_km = height_km;
+  terminal.horizon_ray = atmosphere.trace(0, height_km, 0);
+  terminal.horizon_km =
+      kP528EarthRadius_km * (terminal.horizon_ray.upper_elevation_rad + terminal.horizon_ray.bending_rad);
+  const double angle_rad = terminal.horizon_km / kEffectiveEarth_km;                             // (4-1)
+  terminal.effective_height_km = kEffectiveEarth_km / std::cos(angle_rad) - kEffectiveEarth_km;  // (4-2)
+  terminal.height_difference_km = height_km - terminal.effective_height_km;                      // (4-3)
+  return terminal;
+}
+
 P528Curve::P528Curve(std::shared_ptr<const P528Atmosphere> atmosphere, double frequency_hz,
                      double first_height_m, double second_height_m, bool vertical_polarization)
+    : P528Curve(atmosphere, frequency_hz, p528Terminal(*atmosphere, first_height_m),
+                p528Terminal(*atmosphere, second_height_m), vertical_polarization) {}
+
+P528Curve::P528Curve(std::shared_ptr<const P528Atmosphere> atmosphere, double frequency_hz,
+                     const P528Terminal& first, const P528Terminal& second, bool vertical_polarization)
     : atmosphere_(std::move(atmosphere)),
       frequency_mhz_(frequency_hz / 1e6),
       wavelength_km_(0.2997925 / frequency_mhz_),
-      vertical_(vertical_polarization) {
-  const auto require = [](const ModelLimit& limit, double value) {
-    if (!limit.holds(value)) throw Error(ErrorCode::bad_input, "p528: " + outsideMessage(limit, value));
-  };
+      vertical_(vertical_polarization),
+      terminal_{first, second} {
   require(kP528Frequency, frequency_hz);
-  require(kP528Height, first_height_m);
-  require(kP528Height, second_height_m);
-  terminal_[0] = terminalAt(std::min(first_height_m, second_height_m) / 1000);
-  terminal_[1] = terminalAt(std::max(first_height_m, second_height_m) / 1000);
+  if (second.height_km < first.height_km) std::swap(terminal_[0], terminal_[1]);
   horizon_km_ = terminal_[0].horizon_km + terminal_[1].horizon_km;  // (3-1)
 
   // the line through two diffraction losses behind the horizon (3-2) to (3-7)
@@ -137,19 +157,6 @@ P528Curve::P528Curve(std::shared_ptr<const P528Atmosphere> atmosphere, double fr
   setLobing();
   horizon_k_db_ = lineOfSight(horizon_km_ - 1, 50).k_db;
   setBeyondHorizon();
-}
-
-/// [4]
-P528Terminal P528Curve::terminalAt(double height_km) const {
-  P528Terminal terminal;
-  terminal.height_km = height_km;
-  terminal.horizon_ray = atmosphere_->trace(0, height_km, 0);
-  terminal.horizon_km =
-      kP528EarthRadius_km * (terminal.horizon_ray.upper_elevation_rad + terminal.horizon_ray.bending_rad);
-  const double angle_rad = terminal.horizon_km / kEffectiveEarth_km;                             // (4-1)
-  terminal.effective_height_km = kEffectiveEarth_km / std::cos(angle_rad) - kEffectiveEarth_km;  // (4-2)
-  terminal.height_difference_km = height_km - terminal.effective_height_km;                      // (4-3)
-  return terminal;
 }
 
 /// Over a smooth earth [10].

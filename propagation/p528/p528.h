@@ -39,6 +39,10 @@ struct P528Terminal {
   double horizon_km = 0;            ///< distance along the ground to the grazing point
 };
 
+/// @param height_m  above the smooth earth
+/// @throws Error (bad_input) for a height outside kP528Height
+P528Terminal p528Terminal(const P528Atmosphere& atmosphere, double height_m);
+
 /// Loss against distance for one pair of heights. The terms that do not depend on the distance are computed
 /// once, at construction; a point then takes about 16 us. Safe to share between threads.
 class P528Curve {
@@ -48,6 +52,9 @@ class P528Curve {
   /// @throws Error (bad_input) for a frequency or a height outside kP528Frequency, kP528Height
   P528Curve(std::shared_ptr<const P528Atmosphere> atmosphere, double frequency_hz, double first_height_m,
             double second_height_m, bool vertical_polarization = false);
+  /// The same between terminals of that atmosphere.
+  P528Curve(std::shared_ptr<const P528Atmosphere> atmosphere, double frequency_hz, const P528Terminal& first,
+            const P528Terminal& second, bool vertical_polarization = false);
 
   /// @param distance_m    along the ground, >= 0
   /// @param time_percent  1..99
@@ -69,7 +76,6 @@ class P528Curve {
     double k_db;  ///< of the fading
   };
 
-  P528Terminal terminalAt(double height_km) const;
   double diffraction_db(double distance_km) const;
   TwoRays raysAt(double grazing_rad) const;
   TwoRays raysAtDistance(double distance_km) const;

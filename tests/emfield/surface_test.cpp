@@ -140,6 +140,46 @@ TEST_P(SurfaceField, SLOW_EqualsPathsAtManyPositions) {
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
 }
 
+// The same of shadows, which are equal.
+TEST_P(SurfaceField, ShadowsOfManyPositionsEqualThoseOfFew) {
+  for (const bool has_void : {false, true}) {
+    if (has_void) terrain_ = std::make_shared<MadeTerrain>(36.303, -84.246, 0.3, 0.04);
+    for (const auto refraction :
+         {propagation::RefractionProfile::linear, propagation::RefractionProfile::exponential}) {
+      const auto scenario = radarOnRidge(PropagationModel::horizon);
+      scenario->platforms[0].track[0].position.height_agl_m = 3;
+      scenario->atmosphere.refraction = refraction;
+      const auto many = positions(HeightReference::ground, {2, 20, 150}, 300, 200);
+      FieldOptions options;
+      options.backend = GetParam();
+      options.allow_missing_terrain = true;
+      options.surface = many;
+      const auto of_many = solve(scenario, terrain_, options);
+      int lit = 0, dark = 0;
+      constexpr std::size_t kPart = 6000;
+      for (std::size_t first = 0; first < many->positions.size(); first += kPart) {
+        auto few = std::make_shared<Surface>(*many);
+        few->width = 100;
+        few->height = static_cast<int>(kPart / 100);
+        few->positions.assign(many->positions.begin() + static_cast<std::ptrdiff_t>(first),
+                              many->positions.begin() + static_cast<std::ptrdiff_t>(first + kPart));
+        options.surface = few;
+        const auto of_few = solve(scenario, terrain_, options);
+        for (std::size_t p = 0; p < kPart; ++p) {
+          ASSERT_EQ(of_many->first_valid_k[first + p], of_few->first_valid_k[p]);
+          for (std::size_t k = of_few->first_valid_k[p]; k < 3; ++k) {
+            const float value = of_few->values[k * kPart + p];
+            ASSERT_EQ(of_many->values[k * many->positions.size() + first + p], value) << first + p;
+            ++(value > of_few->info.floor ? lit : dark);
+          }
+        }
+      }
+      EXPECT_GT(lit, 10000);
+      EXPECT_GT(dark, 10000);
+    }
+  }
+}
+
 // Few positions are computed from their whole profiles, many by a search that reads parts of them.
 TEST_P(SurfaceField, ManyPositionsAroundAVoidEqualFew) {
   terrain_ = std::make_shared<MadeTerrain>(36.303, -84.246, 0.3, 0.04);

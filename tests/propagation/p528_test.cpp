@@ -6,9 +6,12 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 #include "emscape/base/units.h"
 #include "propagation/air/gases.h"
+#include "propagation/p528/point_table.h"
 #include "propagation/p528/variability.h"
 #include "tests/support/errors.h"
 
@@ -140,6 +143,72 @@ TEST(P528Atmosphere, BendsGrazingRaysAsAnEarthOfItsEffectiveRadius) {
   const double horizon_km = kP528EarthRadius_km * (ray.upper_elevation_rad + ray.bending_rad);
   EXPECT_NEAR(horizon_km, std::sqrt(2 * 9257.0), 3);
   EXPECT_NEAR(ray.length_km, horizon_km, 0.2);
+}
+
+/// Differences (dB) of a table from the model, at some of its points.
+struct TableErrors {
+  int compared = 0, above_10_mdb = 0;
+  double largest_db = 0;
+};
+
+TableErrors errorsOf(P528PointTable& table, const EmitterInputs& emitter, double tx_m,
+                     const std::vector<P528PointTable::Point>& points) {
+  std::vector<float> excess_db(points.size(), -1000);
+  table.fill(points.size(), [&](std::size_t i) { return points[i]; }, excess_db.data());
+  const auto atmosphere = std::make_shared<const P528Atmosphere>(emitter.frequency_hz);
+  TableErrors errors;
+  for (std::size_t i = 0; i < points.size(); i += 89) {
+    if (std::isnan(points[i].range_m)) {
+      EXPECT_EQ(excess_db[i], -1000) << "left out";
+      continue;
+    }
+    const P528Loss loss = P528Curve(atmosphere, emitter.frequency_hz, tx_m, points[i].height_m,
+                                    emitter.polarization == Polarization::vertical)
+                              .at(points[i].range_m, emitter.settings.p528.time_percent);
+    const double error_db =
+        std::fabs(static_cast<double>(excess_db[i]) - (loss.loss_db - loss.free_space_db));
+    ++errors.compared;
+    errors.above_10_mdb += error_db > 0.01 ? 1 : 0;
+    errors.largest_db = std::max(errors.largest_db, error_db);
+  }
+  return errors;
+}
+
+TEST(P528PointTable, EqualsCurveOfEachPoint) {
+  struct Case {
+    double frequency_hz, time_percent;
+    Polarization polarization;
+    double tx_m, farthest_m, lowest_m, highest_m;
+  };
+  const Case cases[] = {{3e9, 50, Polarization::vertical, 500, 50e3, 100, 1900},
+                        {1.2e9, 95, Polarization::horizontal, 15, 400e3, 2, 2000},
+                        {20e9, 5, Polarization::vertical, 3000, 200e3, 2, 1000},
+                        {300e6, 1, Polarization::horizontal, 15, 30e3, 150, 150}};
+  std::mt19937 random(528);
+  std::uniform_real_distribution<double> part(0, 1);
+  for (const Case& c : cases) {
+    SCOPED_TRACE(::testing::Message() << c.frequency_hz << " Hz, " << c.tx_m << " m");
+    EmitterInputs emitter;
+    emitter.frequency_hz = c.frequency_hz;
+    emitter.polarization = c.polarization;
+    emitter.settings.p528.time_percent = c.time_percent;
+    std::vector<P528PointTable::Point> points;
+    for (int n = 0; n < 40000; ++n) {
+      points.push_back({c.farthest_m * std::sqrt(part(random)),
+                        c.lowest_m + (c.highest_m - c.lowest_m) * part(random)});
+      if (n % 1000 == 0) points.back().range_m = std::numeric_limits<double>::quiet_NaN();
+    }
+    P528PointTable table(emitter, c.tx_m, c.lowest_m, c.highest_m + 100, c.farthest_m);
+    const TableErrors first = errorsOf(table, emitter, c.tx_m, points);
+    const std::size_t evaluations = table.evaluations();
+    EXPECT_LE(first.above_10_mdb, first.compared / 200);
+    EXPECT_LT(first.largest_db, 0.03);
+    EXPECT_LT(evaluations, points.size());
+    for (P528PointTable::Point& point : points) point.height_m += 100;
+    const TableErrors second = errorsOf(table, emitter, c.tx_m, points);
+    EXPECT_LE(second.above_10_mdb, second.compared / 200);
+    EXPECT_LT(second.largest_db, 0.03);
+  }
 }
 
 TEST(P528Atmosphere, RaysDownwardsPassTheirLowestPoint) {

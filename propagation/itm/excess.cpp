@@ -1,0 +1,78 @@
+#include "propagation/itm/excess.h"
+
+#include <algorithm>
+
+#include "base/math/simd.h"
+#include "propagation/itm/column.h"
+
+namespace emscape::propagation {
+namespace {
+
+bool isItmUnknown(const TerrainProfile& profile) {
+  const float* const heights_m = profile.height_msl_m;
+  int unknown = 0;
+#pragma omp simd reduction(| : unknown)
+  for (int i = 0; i < profile.count; ++i) unknown |= heights_m[i] == heights_m[i] ? 0 : 1;
+  return unknown != 0;
+}
+
+}  // namespace
+
+/// The same as the loop over single posts, in parts of which the intervals are found first.
+inline void ItmExcess::spaceEvenlyInLanes(const TerrainProfile& profile, int intervals,
+                                          float* heights_msl_m) {
+  constexpr int kPart = 64;
+  const double* const ranges_m = profile.range_m;
+  const float* const posts_msl_m = profile.height_msl_m;
+  const int last = profile.count - 1;
+  const double length_m = ranges_m[last];
+  int after = 1;
+  for (int first = 0; first <= intervals; first += kPart) {
+    const int count = std::min(kPart, intervals + 1 - first);
+    double at_m[kPart];
+    int after_of[kPart];
+#pragma omp simd
+    for (int n = 0; n < count; ++n) at_m[n] = length_m * (first + n) / intervals;
+    for (int n = 0; n < count; ++n) {
+      while (after < last && ranges_m[after] < at_m[n]) ++after;
+      after_of[n] = after;
+    }
+#pragma omp simd
+    for (int n = 0; n < count; ++n) {
+      const double before_m = ranges_m[after_of[n] - 1];
+      const auto part = static_cast<float>((at_m[n] - before_m) / (ranges_m[after_of[n]] - before_m));
+      const float before = posts_msl_m[after_of[n] - 1];
+      heights_msl_m[first + n] = before + part * (posts_msl_m[after_of[n]] - before);
+    }
+  }
+}
+
+EMSCAPE_SIMD_CLONES unsigned ItmExcess::operator()(const ExcessColumn& column, const ExcessScratch& scratch,
+                                                   float* excess_db) const {
+  const float path_weight = pathWeight(column);
+  // Diffraction is only computed if it has a part in the result.
+  const bool is_alone = path_weight == 1 && itmHeightWeight(heightAgl(column, column.count - 1)) == 1;
+  if (!is_alone) {
+    const unsigned warnings = diffraction(column, scratch, excess_db);
+    if (warnings != 0 || path_weight == 0) return warnings;
+  } else if (isItmUnknown(column.profile)) {
+    std::fill_n(excess_db, column.count, NAN);
+    return kMissingTerrain;
+  }
+  spaceEvenlyInLanes(column.profile, evenIntervals(column.profile), scratch.even_ground_msl_m);
+  const ItmProfile<float> even = evenProfile(column, scratch);
+  ItmColumn statistics(even, scratch.post_numbers, scratch.post_numbers + scratch.posts);
+  const ColumnPart all{0, column.count, scratch.other_db};
+  const unsigned warnings = evaluate(column, even, statistics, all);
+  if (!is_alone) {
+    blend(column, all, excess_db);
+    return warnings;
+  }
+  if ((warnings & kItmRefused) != 0) diffraction(column, scratch, excess_db);
+  for (int k = 0; k < column.count; ++k) {
+    if (all.memory_db[k] == all.memory_db[k]) excess_db[k] = all.memory_db[k];
+  }
+  return warnings;
+}
+
+}  // namespace emscape::propagation
