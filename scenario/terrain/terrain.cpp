@@ -288,14 +288,23 @@ void TerrainMosaic::requireSurface(const TerrainSpec& spec, const GeoBox& box) c
   std::nth_element(above_m.begin(), above_m.begin() + static_cast<std::ptrdiff_t>(above_m.size() / 2),
                    above_m.end());
   const double median_m = above_m[above_m.size() / 2];
-  if (median_m >= -kMaxBelow_m && median_m <= kMaxAbove_m) return;
+  const auto countOf = [&](auto&& isOne) { return std::count_if(above_m.begin(), above_m.end(), isOne); };
+  const auto below = countOf([](double difference_m) { return difference_m < -kMaxBelow_m; });
+  const auto above = countOf([](double difference_m) { return difference_m > kMaxBelow_m; });
+  // Errors of heights lie on both sides.
+  const bool is_below = 10 * below > static_cast<long>(above_m.size()) && 4 * above < below;
+  if (!is_below && median_m <= kMaxAbove_m) return;
+  const std::string found =
+      is_below ? fmt::format("more than {:g} m below the ground ('files') at {:.0f} % of places", kMaxBelow_m,
+                             100.0 * static_cast<double>(below) / static_cast<double>(above_m.size()))
+               : fmt::format("{:.4g} m above the ground ('files') in the median", median_m);
   throw Error(
       ErrorCode::bad_input,
       spec.surface_locations.empty() ? SourceLocation{} : spec.surface_locations.front(),
-      fmt::format("the surface model ('surface_files') is {:.4g} m {} the ground ('files'; median): the "
-                  "two are exchanged, or it has heights above the ground, or its unit ('height_unit') or "
-                  "datum ('vertical_datum') is another one",
-                  std::abs(median_m), median_m < 0 ? "below" : "above"));
+      fmt::format("the surface model ('surface_files') is {}: the two are exchanged, or it has heights "
+                  "above the ground, or its unit ('height_unit') or datum ('vertical_datum') is another "
+                  "one",
+                  found));
 }
 
 void TerrainMosaic::addSurface(const TerrainSpec& spec, const GeoBox& box) {

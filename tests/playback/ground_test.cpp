@@ -34,6 +34,39 @@ double waterPart(const render::HeightField& ground) {
          static_cast<double>(ground.kinds.size());
 }
 
+TEST(Drape, OfLandCoverNamesItsClassesTheMostFrequentFirst) {
+  const TemporaryFolder folder;
+  emscape::test::geographicDem(4.75, 52.25, 0.002, 250, 250, [](double, double longitude_deg) {
+    return longitude_deg < 4.9 ? 80.0 : 10.0;  // water and trees of WorldCover
+  }).write(folder / "codes.tif");
+  emscape::test::wholeNumbers(folder / "codes.tif", folder / "cover.tif");
+  emscape::test::geographicDem(4.75, 52.25, 0.002, 250, 250, [](double, double) {
+    return 20.0;
+  }).write(folder / "dem.tif");
+  const LoadedScenario scene = loadScenarioWithTerrain(quickScenario(
+      folder, {{"platforms:",
+                "terrain: {files: [dem.tif], land_cover: {files: [cover.tif], classes: worldcover}}\n"
+                "platforms:"}}));
+  const volume::Grid grid = gridOf(scene);
+  render::HeightField ground = *groundOf(scene, grid, nullptr, true).field;
+  const std::vector<render::Category> classes = drape(ground, "land-cover", scene.terrain.get(), grid);
+  ASSERT_FALSE(classes.empty());
+  EXPECT_EQ(classes[0].name, "tree cover");
+  ASSERT_TRUE(classes[0].color);
+  EXPECT_FLOAT_EQ(classes[0].color->g, 100.0F / 255);
+  ViewState view;
+  view.drape = "land-cover";
+  Scenery scenery;
+  scenery.update(view, &scene, grid);
+  render::Annotations annotations;
+  scenery.annotate(annotations, view, {});
+  EXPECT_EQ(annotations.ground_classes.size(), classes.size());
+  view.drape.clear();
+  scenery.update(view, &scene, grid);
+  scenery.annotate(annotations, view, {});
+  EXPECT_TRUE(annotations.ground_classes.empty());
+}
+
 TEST(GroundOf, TerrainIsSeaWhereItIsFlatAtSeaLevel) {
   const TemporaryFolder folder;
   // Sea in the west; land that rises to the east, with a flat pond at sea level that is too small, and a flat

@@ -222,8 +222,8 @@ TEST_F(TerrainWithCover, RefusesASurfaceModelThatIsNone) {
   TerrainSpec spec = ground(500);
   spec.surface_files = {folder_ / "surface.tif"};
   for (const double surface_m : {20.0, 480.0, 1700.0}) {
-    test::geographicDem(-84.6, 36.8, 0.01, 80, 80, [&](double, double) {
-      return surface_m;
+    test::geographicDem(-84.6, 36.8, 0.01, 80, 80, [&](double, double longitude_deg) {
+      return longitude_deg < kBorder_deg || surface_m > 500 ? surface_m : 500;
     }).write(folder_ / "surface.tif");
     EXPECT_THAT(test::errorOf([&] { Terrain::load(spec, kBox); }, ErrorCode::bad_input),
                 HasSubstr("the surface model ('surface_files') is"))
