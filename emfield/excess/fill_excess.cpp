@@ -61,7 +61,7 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
   std::atomic<unsigned> all_warnings{0};
   std::atomic<int> filled_columns{0};
   parallelFor((columns + kBlock - 1) / kBlock, 4, [&](int begin, int end) {
-    std::vector<double> memory(ExcessScratch::bytes(task.posts(), grid.layers) / sizeof(double) + 1);
+    UnsetVector<double> memory(ExcessScratch::bytes(task.posts(), grid.layers) / sizeof(double) + 1);
     const ExcessScratch scratch = ExcessScratch::in(memory.data(), task.posts(), grid.layers);
     std::vector<float> excess_db(static_cast<std::size_t>(grid.layers) * kBlock);
     unsigned warnings = 0;

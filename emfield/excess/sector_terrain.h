@@ -94,7 +94,7 @@ class SectorTerrain {
   /// Per block: bound of the difference (m) between the height at the post that stands for a range and the
   /// heights at this range anywhere in the sector; infinity if there may be a void.
   const float* slack_m() const { return slack_m_.data(); }
-  const SectorChord& chordOf(int block) const { return chords_[block / posts_.blocksPerChord()]; }
+  const SectorChord& chord(int index) const { return chords_[index]; }
   int rowPosts() const { return raster_->columns; }
 
  private:

@@ -16,9 +16,8 @@ namespace {
 using propagation::DiffractionModel;
 
 constexpr int kBlock = SectorPosts::kBlock, kGroup = SectorPosts::kGroup;
-/// Posts of a path in a block: crossings with columns, with rows, and regular posts in the emitter's cell.
-constexpr int kLines = 8, kCrossings = 2 * kLines, kOfBlock = kCrossings + kBlock;
-static_assert(kLines > TerrainBounds::kMaxExtent);
+/// Posts of a path in a block: crossings, of which there are rarely more, and regular posts near the emitter.
+constexpr int kCrossings = 8, kOfBlock = kCrossings + kBlock;
 
 /// Number of groups of kGroup that contain a number of blocks, or of groups.
 int groupsOf(int count) {
@@ -68,7 +67,7 @@ struct PathMemory {
   std::vector<int> rx_block,
       nu_block;  ///< per height: the blocks that determined the loss of the previous path
   int tx_block = 0;
-  bool is_unknown = false;  ///< a void was read
+  bool is_left = false;  ///< the path has a void, or a block of too many posts
   SectorTrend trend;
   /// Paths of the sector that were searched, and of their receivers, path by path: nu and distance of the
   /// edge, and the loss.
@@ -90,6 +89,28 @@ struct Path {
   float last_m;  ///< largest range of an obstacle
   int number;
   float aside;  ///< in the sector, -1..1
+};
+
+/// The crossings of a short straight part of a path with columns or rows.
+struct Lines {
+  float begin, length;  ///< coordinate whose integers are the lines
+  float per_length;
+  int first, step, count;
+
+  /// @param overlap  the part begins earlier by this
+  Lines(float begin_at, float end_at, float overlap) : begin(begin_at), length(end_at - begin_at) {
+    const bool rises = length > 0;
+    const int cell = static_cast<int>(rises ? begin - overlap : begin + overlap),
+              last = static_cast<int>(end_at);
+    first = rises ? cell + 1 : cell;
+    step = rises ? 1 : -1;
+    count = rises ? last - cell : cell - last;
+    per_length = count > 0 ? 1 / length : 0;
+  }
+  float partOf(int line) const {
+    const float part = (static_cast<float>(line) - begin) * per_length;
+    return part > 0 ? (part < 1 ? part : 1.0f) : 0.0f;
+  }
 };
 
 /// Finds the maxima over the posts of a path.
@@ -176,7 +197,8 @@ class Search {
     if (memory_.read_for[block] == path_.number) return;
     memory_.read_for[block] = path_.number;
     const SectorPosts& of_sectors = *posts_.of_sectors;
-    const SectorChord& chord = terrain_.chordOf(block);
+    const int index = block / of_sectors.blocksPerChord();
+    const SectorChord& chord = terrain_.chord(index);
     const auto at = [s = path_.aside](const Parabola<float>* of) {
       Parabola<float> here;
       for (int n = 0; n < 3; ++n) here.c[n] = of[0].c[n] + s * (of[1].c[n] + s * of[2].c[n]);
@@ -188,38 +210,31 @@ class Search {
     const float first_part = of_sectors.firstPart()[block];
     const float last_part = first_part + (of_sectors.lastPart()[block] - first_part) * length_m /
                                              (posts_.last_m[block] - first_m);
-    float *const range_m = memory_.range_m.data() + block * kOfBlock, *const height_m =
-                                                                          memory_.height_m.data() +
-                                                                          block * kOfBlock;
+    float* const range_m = memory_.range_m.data() + block * kOfBlock;
+    float* const height_m = memory_.height_m.data() + block * kOfBlock;
     const float* const corner = chord.corner_msl_m;
     const int row_posts = terrain_.rowPosts();
     const float base_msl_m = bounds_.base_msl_m;
     // Chords meet within rounding: the first block of one begins a little earlier.
-    const float overlap = block > 0 && block % of_sectors.blocksPerChord() == 0 ? 1e-4f : 0;
-    const auto cross = [=](const Parabola<float>& to_line, const Parabola<float>& along, int line_step,
-                           int along_step, float* ranges, float* heights) {
-      const float begin = to_line.at(first_part), end = to_line.at(last_part);
-      const float along_begin = along.at(first_part), along_length = along.at(last_part) - along_begin;
-      const bool rises = end > begin;
-      const int first = static_cast<int>(rises ? begin - overlap : begin + overlap);
-      const int last = static_cast<int>(end);
-      const int count = rises ? last - first : first - last, step = rises ? 1 : -1;
-      const float per_length = count > 0 ? 1 / (end - begin) : 0;
+    const float overlap = block > 0 && block == index * of_sectors.blocksPerChord() ? 1e-4f : 0;
+    const Lines columns(column.at(first_part), column.at(last_part), overlap);
+    const Lines rows(row.at(first_part), row.at(last_part), overlap);
+    const int column_count = columns.count, count = column_count + rows.count;
+    memory_.is_left = memory_.is_left || count > kCrossings;
 #pragma omp simd
-      for (int n = 0; n < kLines; ++n) {
-        const int line = n < count ? first + (rises ? 1 : 0) + step * n : first;
-        const float to = (static_cast<float>(line) - begin) * per_length;
-        const float part = to > 0 ? (to < 1 ? to : 1.0f) : 0.0f;
-        const float position = along_begin + part * along_length;
-        const int cell = static_cast<int>(position);
-        const int post = line * line_step + cell * along_step;
-        const float here = lerp(corner[post], corner[post + along_step], position - static_cast<float>(cell));
-        ranges[n] = first_m + part * length_m;
-        heights[n] = n < count ? here - base_msl_m : -HUGE_VALF;
-      }
-    };
-    cross(column, row, 1, row_posts, range_m, height_m);
-    cross(row, column, row_posts, 1, range_m + kLines, height_m + kLines);
+    for (int n = 0; n < kCrossings; ++n) {
+      const int of_row = n < count ? n - column_count : 0;
+      const int line_column = columns.first + columns.step * n, line_row = rows.first + rows.step * of_row;
+      const float part = n < column_count ? columns.partOf(line_column) : rows.partOf(line_row);
+      const float x = columns.begin + part * columns.length, y = rows.begin + part * rows.length;
+      const int i = n < column_count ? line_column : static_cast<int>(x);
+      const int j = n < column_count ? static_cast<int>(y) : line_row;
+      const int post = j * row_posts + i, next = post + (n < column_count ? row_posts : 1);
+      const float along = n < column_count ? y - static_cast<float>(j) : x - static_cast<float>(i);
+      const float here = lerp(corner[post], corner[next], along) - base_msl_m;
+      range_m[n] = first_m + part * length_m;
+      height_m[n] = n < count ? here : -HUGE_VALF;
+    }
     const int first_post = block * kBlock;
     for (int i = 0; first_post < posts_.near_count && i < kBlock; ++i) {
       const int post = first_post + i;
@@ -230,8 +245,8 @@ class Search {
       height_m[kCrossings + i] = is_read ? here : -HUGE_VALF;
     }
     if (!(terrain_.slack_m()[block] < HUGE_VALF)) {
-      const int count = first_post < posts_.near_count ? kOfBlock : kCrossings;
-      for (int i = 0; i < count; ++i) memory_.is_unknown = memory_.is_unknown || std::isnan(height_m[i]);
+      const int stored = first_post < posts_.near_count ? kOfBlock : kCrossings;
+      for (int i = 0; i < stored; ++i) memory_.is_left = memory_.is_left || std::isnan(height_m[i]);
     }
   }
 
@@ -483,11 +498,11 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
       memory.rx_m[n] = model.raised_m(here_m - bounds.base_msl_m, ground_m);
     }
     if (!isClearOfEarth(posts, terrain, bounds, *to, path, memory.rx_m[0], memory.trend)) continue;
-    memory.is_unknown = false;
+    memory.is_left = false;
     const std::size_t first = memory.searched.size() * layers;
     findEdges(posts, bounds, path, Search(posts, terrain, bounds, memory, path), memory.rx_m.data(),
               grid.layers, memory, memory.nu.data() + first);
-    if (memory.is_unknown) continue;
+    if (memory.is_left) continue;
     memory.searched.push_back(to);
     std::fill_n(memory.distance_m.begin() + static_cast<std::ptrdiff_t>(first), layers, path.distance_m);
   }

@@ -27,6 +27,7 @@ struct LineCrossings {
   int step = 1;         ///< from one line to the next before the turn
   int before_turn = 0;  ///< crossings before the turn
   int count = 0;
+  bool is_straight = false;  ///< nearly, and without a turn: see partOfStraight()
 
   explicit EMSCAPE_HD LineCrossings(const Parabola<float>& of) : coordinate(of) {
     const float* const c = of.c;
@@ -39,19 +40,32 @@ struct LineCrossings {
     turn_cell = turn < 1 ? cellOf(turn) : last_cell;
     before_turn = distance(first_cell, turn_cell);
     count = before_turn + distance(turn_cell, last_cell);
+    is_straight = std::fabs(c[2]) < 0.007f * std::fabs(c[1]);
   }
 
   /// The line of crossing n, 0 <= n < count.
+  template <bool kStraight = false>
   EMSCAPE_HD int line(int n) const {
+    if (kStraight) return (step > 0 ? first_cell + 1 : first_cell) + step * n;
     const int first = first_cell + (step > 0 ? 1 : 0), after = turn_cell + (step > 0 ? 0 : 1);
     return n < before_turn ? first + step * n : after - step * (n - before_turn);
   }
   /// The part of the chord at which crossing n is: 0..1.
+  template <bool kStraight = false>
   EMSCAPE_HD float part(int n, int line) const {
+    if (kStraight) return partOfStraight(line);
     const float* const c = coordinate.c;
     const float to_line = static_cast<float>(line) - c[0], square = c[1] * c[1] + 4 * c[2] * to_line;
     const float sum = c[1] + to_root * std::sqrt(square > 0 ? square : 0.0f);
     const float part = (n < before_turn ? 2 * to_line : -sum) / (n < before_turn ? sum : 2 * c[2]);
+    return part > 0 ? (part < 1 ? part : 1.0f) : 0.0f;
+  }
+  /// The same where is_straight, without a division: a series of part(), within 5e-8.
+  EMSCAPE_HD float partOfStraight(int line) const {
+    const float* const c = coordinate.c;
+    const float inverse = 1 / c[1], to = (static_cast<float>(line) - c[0]) * inverse;
+    const float bend = 4 * c[2] * inverse * to;
+    const float part = to * (1 - bend * (0.25f - bend * (0.125f - bend * 0.078125f)));
     return part > 0 ? (part < 1 ? part : 1.0f) : 0.0f;
   }
   /// Number of crossings before a part of the chord, at which the coordinate is in a cell: 0..count. That of
@@ -92,17 +106,20 @@ struct ChordCrossings {
   EMSCAPE_HD int count() const { return columns.count + rows.count; }
 
   /// Crossing n with a column, 0 <= n < columns.count.
+  /// @tparam kStraight  true: faster; only where columns.is_straight
+  template <bool kStraight = false>
   EMSCAPE_HD Crossing atColumn(int n) const {
-    const int i = columns.line(n);
-    const float part = columns.part(n, i), y = rows.coordinate.at(part);
+    const int i = columns.line<kStraight>(n);
+    const float part = columns.part<kStraight>(n, i), y = rows.coordinate.at(part);
     const int j = static_cast<int>(y), at = j * row_posts + i;
     const float south = corner_msl_m[at], north = corner_msl_m[at + row_posts];
     return {part, lerp(south, north, y - static_cast<float>(j)), 1 + n + rows.countBefore(part, j)};
   }
   /// Crossing n with a row, 0 <= n < rows.count.
+  template <bool kStraight = false>
   EMSCAPE_HD Crossing atRow(int n) const {
-    const int j = rows.line(n);
-    const float part = rows.part(n, j), x = columns.coordinate.at(part);
+    const int j = rows.line<kStraight>(n);
+    const float part = rows.part<kStraight>(n, j), x = columns.coordinate.at(part);
     const int i = static_cast<int>(x);
     const int at = j * row_posts + i;
     const float west = corner_msl_m[at], east = corner_msl_m[at + 1];

@@ -26,7 +26,7 @@ GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<doub
   ground.ranges_m = ranges_m.data();
   ground.range_count = static_cast<int>(ranges_m.size());
   if (terrain != nullptr) {
-    constexpr double kNear = 3, kMaxPerPost = 4;  // spacings of the terrain
+    constexpr double kNear = 3, kMaxPerPost = 3;  // spacings of the terrain
     const double near_m = kNear * terrain->postSpacing_m();
     ground.near_count =
         static_cast<int>(std::lower_bound(ranges_m.begin(), ranges_m.end(), near_m) - ranges_m.begin());

@@ -63,7 +63,10 @@ EMSCAPE_HD inline int maxPosts(const Station& station, const GroundPosts& ground
   if (!at_crossings || ground.is_smooth) return regular;
   const double farthest_m = ground.ranges_m[ground.range_count - 1];
   const double chords = 1 + farthest_m / maxChord_m(std::fabs(station.geodesy.station.up.z));
-  return regular + ground.maxCrossings(farthest_m) + static_cast<int>(chords) * (ground.maxCrossings(0) + 2);
+  // Of each chord either the crossings or the regular posts, of which there are two thirds of the most
+  // crossings.
+  return regular + ground.maxCrossings(farthest_m) / 3 +
+         static_cast<int>(chords) * (ground.maxCrossings(0) + 2);
 }
 
 /// The ground below an emitter's paths, in host memory. Pointers are valid as long as both arguments.

@@ -60,10 +60,23 @@ EMSCAPE_SIMD_CLONES bool readCrossings(const ChordCrossings& of, double begin_m,
       }
     }
   };
-  readLines(crossings.columns.count, [&](int n) { return crossings.atColumn(n); });
-  readLines(crossings.rows.count, [&](int n) { return crossings.atRow(n); });
-  for (int i = 1; i <= count; ++i) {  // empty places, at posts of the raster
+  const int columns = crossings.columns.count, rows = crossings.rows.count;
+  if (crossings.columns.is_straight) {
+    readLines(columns, [&](int n) { return crossings.atColumn<true>(n); });
+  } else {
+    readLines(columns, [&](int n) { return crossings.atColumn(n); });
+  }
+  if (crossings.rows.is_straight) {
+    readLines(rows, [&](int n) { return crossings.atRow<true>(n); });
+  } else {
+    readLines(rows, [&](int n) { return crossings.atRow(n); });
+  }
+  int empty = 0;
+#pragma omp simd reduction(+ : empty)
+  for (int i = 1; i <= count; ++i) empty += range_m[i] < 0 ? 1 : 0;
+  for (int i = 1; empty > 0 && i <= count; ++i) {  // at posts of the raster
     if (range_m[i] >= 0) continue;
+    --empty;
     range_m[i] = i > 1 ? range_m[i - 1] : crossingRange_m(begin_m, chord_m, 0, receivers_m);
     height_msl_m[i] = i > 1
                           ? height_msl_m[i - 1]
