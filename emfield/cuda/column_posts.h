@@ -128,10 +128,16 @@ class ColumnPosts {
     return {walk.chords(), walk.chord_m()};
   }
 
-  static __device__ std::uint64_t bitOf(int chord) { return 1ull << min(chord, 62); }
-  __device__ bool isRegular(int chord) const { return (regular_chords_ & bitOf(chord)) != 0; }
+  static __device__ std::uint64_t bitOf(int chord) {
+    return 1ull << min(chord, 62);
+  }
+  __device__ bool isRegular(int chord) const {
+    return (regular_chords_ & bitOf(chord)) != 0;
+  }
   /// A post may be at the receivers in float.
-  __device__ float farthest_m() const { return static_cast<float>(path_.distance_m) * (1 - 2.4e-7f); }
+  __device__ float farthest_m() const {
+    return static_cast<float>(path_.distance_m) * (1 - 2.4e-7f);
+  }
 
   /// Height above mean sea level (m), with the clutter where that counts; NaN over missing terrain.
   __device__ float heightAt(const TerrainChord& chord, double range_m) const {
@@ -274,7 +280,8 @@ class ColumnPosts {
       add(part, lerp(near[0], near[few_step], across - static_cast<float>(next_cell)));
     }
     while (other < others) {
-      visit(PathPost{fminf(static_cast<float>(others_m[other]), farthest_m), heightAt(chord, others_m[other])});
+      visit(
+          PathPost{fminf(static_cast<float>(others_m[other]), farthest_m), heightAt(chord, others_m[other])});
       ++other;
     }
     return isnan(unknown) ? Found::void_post : Found::all;

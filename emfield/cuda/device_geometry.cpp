@@ -306,8 +306,12 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
       task.model = itm->diffraction;
       task.ground.is_raised = work.model->is_raised && work.ground.terrain.hasCover();
     } else if (isDiffraction(*work.model)) {
-      task = {std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station, work.ground,
-              work.excess, work.model->terminal};
+      task = {std::get<DiffractionExcess>(work.model->model),
+              work.model->air,
+              work.task.station,
+              work.ground,
+              work.excess,
+              work.model->terminal};
       task.ground.is_raised = work.model->is_raised && work.ground.terrain.hasCover();
       task.at_crossings = true;
     } else {

@@ -1,5 +1,5 @@
-// `diffraction` on the device: a thread a column, which reads its posts again for some receivers at a time and
-// stores none.
+// `diffraction` on the device: a thread a column, which reads its posts again for some receivers at a time
+// and stores none.
 //
 // The first pass over a path's posts gives the steepest slope from the transmitter, and the slope of the line
 // of sight above which every post is clear: nu of a post falls linearly with the receiver's height. Only
@@ -96,8 +96,8 @@ class Receivers {
   template <int kReceivers>
   __device__ bool survey(float lowest_m, const float* rx_m, Maxima* most) {
     const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
-    has_earth_ = !isClearThroughout(earth, distance_m_,
-                                    sightLine(earth, distance_m_, tx_m_, lowest_m - ground_m_));
+    has_earth_ =
+        !isClearThroughout(earth, distance_m_, sightLine(earth, distance_m_, tx_m_, lowest_m - ground_m_));
     const bool for_any = __any_sync(__activemask(), has_earth_);  // one loop for all threads
     return for_any ? pass<kReceivers, true, true>(rx_m, most) : pass<kReceivers, true, false>(rx_m, most);
   }
@@ -154,7 +154,8 @@ class Receivers {
       add(length_m * (from_m + to_m), v1, v1_rest);
       add(length_m * (to_m * (2 * to.range_m + before.range_m) + from_m * (to.range_m + 2 * before.range_m)),
           v2, v2_rest);
-      sea_m = fmaf(length_m, (before.height_msl_m <= 0 ? 0.5f : 0) + (to.height_msl_m <= 0 ? 0.5f : 0), sea_m);
+      sea_m =
+          fmaf(length_m, (before.height_msl_m <= 0 ? 0.5f : 0) + (to.height_msl_m <= 0 ? 0.5f : 0), sea_m);
       before = to;
     };
     bool is_whole;
@@ -165,35 +166,37 @@ class Receivers {
       before = {0, base_msl_m};
 #pragma unroll
       for (int j = 0; j < kReceivers; ++j) edge[j] = nearest[j] = plain_rx[j] = plain[j] = -HUGE_VALF;
-      is_whole = posts_.each<kSurvey && kEarth>([&](const PathPost& post) {
-        const float range = post.range_m, beyond = d - range, product = range * beyond;
-        float root;
-        asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(product));
-        const float above = post.height_msl_m - base_msl_m - tx_m;
-        const float bulged = fmaf(half_curvature, product, above);
-        if constexpr (kSurvey) {
-          unknown += post.height_msl_m - post.height_msl_m;
-          const float per_range = beyond * root;
-          tx = fmaxf(tx, per_range * (bulged * root));
-          clear = fmaxf(clear, per_range * fmaf(bulged, root, clearance));
-          if constexpr (kEarth) {
-            plain_tx = fmaxf(plain_tx, per_range * (above * root));
-            addToTrend(post);
-          }
-        }
-        const float per_beyond = root * root * range, bend = half_curvature * range;
+      is_whole = posts_.each < kSurvey &&
+                 kEarth > ([&](const PathPost& post) {
+                   const float range = post.range_m, beyond = d - range, product = range * beyond;
+                   float root;
+                   asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(product));
+                   const float above = post.height_msl_m - base_msl_m - tx_m;
+                   const float bulged = fmaf(half_curvature, product, above);
+                   if constexpr (kSurvey) {
+                     unknown += post.height_msl_m - post.height_msl_m;
+                     const float per_range = beyond * root;
+                     tx = fmaxf(tx, per_range * (bulged * root));
+                     clear = fmaxf(clear, per_range * fmaf(bulged, root, clearance));
+                     if constexpr (kEarth) {
+                       plain_tx = fmaxf(plain_tx, per_range * (above * root));
+                       addToTrend(post);
+                     }
+                   }
+                   const float per_beyond = root * root * range, bend = half_curvature * range;
 #pragma unroll
-        for (int j = 0; j < kReceivers; ++j) {
-          const float above_line = fmaf(-slope[j], range, bulged);
-          const float from_rx = above_line * (kBoth || is_below[j] ? per_beyond : root);
-          edge[j] = fmaxf(edge[j], from_rx);
-          if constexpr (kBoth) nearest[j] = fmaxf(nearest[j], above_line * root);
-          if constexpr (kEarth) {  // read of those below the steepest plain ray, and so below the steepest one
-            plain_rx[j] = fmaxf(plain_rx[j], from_rx - bend);
-            plain[j] = fmaxf(plain[j], fmaf(-slope[j], range, above));
-          }
-        }
-      });
+                   for (int j = 0; j < kReceivers; ++j) {
+                     const float above_line = fmaf(-slope[j], range, bulged);
+                     const float from_rx = above_line * (kBoth || is_below[j] ? per_beyond : root);
+                     edge[j] = fmaxf(edge[j], from_rx);
+                     if constexpr (kBoth) nearest[j] = fmaxf(nearest[j], above_line * root);
+                     if constexpr (kEarth) {  // read of those below the steepest plain ray, and so below the
+                                              // steepest one
+                       plain_rx[j] = fmaxf(plain_rx[j], from_rx - bend);
+                       plain[j] = fmaxf(plain[j], fmaf(-slope[j], range, above));
+                     }
+                   }
+                 });
     } while (!is_whole);
     if constexpr (kSurvey) {
       tx_slope_ = tx;
@@ -321,6 +324,11 @@ __device__ void fillSegment(const DiffractionTask& task, const ExcessGrid& grid,
       for (; k < end; ++k) set(k, NAN);
       markUnknown(task.to, c);
     }
+  }
+  if (task.air.isClear() && !task.terminal.isSet()) {
+    const ExcessStore to = task.to.out.excess;
+    std::size_t voxel = static_cast<std::size_t>(k) * grid.column_count + column_index;
+    for (; k < end; ++k, voxel += grid.column_count) to.set(voxel, 0);
   }
   for (; k < end; ++k) addOthers(k, 0);
 }

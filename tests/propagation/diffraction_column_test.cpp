@@ -135,8 +135,7 @@ TEST(DiffractionColumn, HasNoJumpsOverRealTerrain) {
       std::vector<float> heights;
       for (int j = 0; j < 4000; ++j)
         heights.push_back(profile.height_msl_m[post] - 5 + 0.05f * static_cast<float>(j));
-      const auto losses =
-          excessOf(profile.view().upTo(post), model, profile.height_msl_m[0] + 10, heights);
+      const auto losses = excessOf(profile.view().upTo(post), model, profile.height_msl_m[0] + 10, heights);
       for (std::size_t j = 1; j < losses.size(); ++j) {
         // 5 cm up: steep only close behind an edge
         ASSERT_NEAR(losses[j], losses[j - 1], 1.0) << "post " << post << ", " << heights[j] << " m";
