@@ -17,8 +17,9 @@ constexpr int kCells = 64;
 constexpr int kDeepest = 10;  ///< levels below
 /// Positions of nodes within a cell of the first level, in whole numbers.
 constexpr int kUnits = 4 << kDeepest;
-/// Points for which a cell is not worth its nodes.
-constexpr std::ptrdiff_t kFewPoints = 4;
+/// Points for which a cell is not worth its first nodes, and for which it is not worth to check and divide
+/// it.
+constexpr std::ptrdiff_t kFewForNodes = 12, kFewForCheck = 4;
 /// Largest difference (dB) at the points of a check, a fifth of the accuracy.
 constexpr double kTolerance_db = 0.002;
 constexpr int kHorizons = 257;
@@ -109,7 +110,8 @@ void P528PointTable::Row::fillCell(const Task& task, int index, const Square& sq
       static_cast<float>((task.column + (square.along + square.side / 2.0) / kUnits) / kCells);
   const float middle_up = static_cast<float>((task.row + (square.up + square.side / 2.0) / kUnits) / kCells);
   if (cells_[index].state == State::empty || cells_[index].state == State::open) {
-    if (end - begin <= kFewPoints || square.side < 4) {
+    const std::ptrdiff_t few = cells_[index].state == State::empty ? kFewForNodes : kFewForCheck;
+    if (end - begin <= few || square.side < 4) {
       for (const Place* place = begin; place < end; ++place) {
         task.excess_db[place->index] = task.table.modelAt(task.pointOf(place->index));
         ++evaluations_;

@@ -154,10 +154,11 @@ struct TableErrors {
 TableErrors errorsOf(P528PointTable& table, const EmitterInputs& emitter, double tx_m,
                      const std::vector<P528PointTable::Point>& points) {
   std::vector<float> excess_db(points.size(), -1000);
-  table.fill(points.size(), [&](std::size_t i) { return points[i]; }, excess_db.data());
+  table.fill(
+      points.size(), [&](std::size_t i) { return points[i]; }, excess_db.data());
   const auto atmosphere = std::make_shared<const P528Atmosphere>(emitter.frequency_hz);
   TableErrors errors;
-  for (std::size_t i = 0; i < points.size(); i += 89) {
+  for (std::size_t i = 0; i < points.size(); i += 25) {
     if (std::isnan(points[i].range_m)) {
       EXPECT_EQ(excess_db[i], -1000) << "left out";
       continue;
@@ -192,18 +193,22 @@ TEST(P528PointTable, EqualsCurveOfEachPoint) {
     emitter.frequency_hz = c.frequency_hz;
     emitter.polarization = c.polarization;
     emitter.settings.p528.time_percent = c.time_percent;
+    // Dense in some parts of the table.
     std::vector<P528PointTable::Point> points;
-    for (int n = 0; n < 40000; ++n) {
-      points.push_back({c.farthest_m * std::sqrt(part(random)),
-                        c.lowest_m + (c.highest_m - c.lowest_m) * part(random)});
-      if (n % 1000 == 0) points.back().range_m = std::numeric_limits<double>::quiet_NaN();
+    for (int window = 0; window < 3; ++window) {
+      const double near_part = 0.95 * part(random), low_part = 0.95 * part(random);
+      for (int n = 0; n < 3000; ++n) {
+        points.push_back({c.farthest_m * (near_part + 0.05 * part(random)),
+                          c.lowest_m + (c.highest_m - c.lowest_m) * (low_part + 0.05 * part(random))});
+        if (n % 1000 == 0) points.back().range_m = std::numeric_limits<double>::quiet_NaN();
+      }
     }
     P528PointTable table(emitter, c.tx_m, c.lowest_m, c.highest_m + 100, c.farthest_m);
     const TableErrors first = errorsOf(table, emitter, c.tx_m, points);
     const std::size_t evaluations = table.evaluations();
     EXPECT_LE(first.above_10_mdb, first.compared / 200);
     EXPECT_LT(first.largest_db, 0.03);
-    EXPECT_LT(evaluations, points.size());
+    EXPECT_LT(evaluations, points.size() / 2) << "it is a table";
     for (P528PointTable::Point& point : points) point.height_m += 100;
     const TableErrors second = errorsOf(table, emitter, c.tx_m, points);
     EXPECT_LE(second.above_10_mdb, second.compared / 200);
