@@ -1,16 +1,24 @@
 #include "scenario/scan/swept_antenna.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "scenario/antenna/pattern.h"
 #include "scenario/antenna/tables.h"
+#include "scenario/scan/many_arcs.h"
 
 namespace emscape::scenario {
 namespace {
+
+/// More are computed by many_arcs.h.
+constexpr std::size_t kFewArcs = 128;
 
 /// Number of intervals of a table: a span with a number of steps per beamwidth; even, up to a limit.
 int intervalsFor(double span_deg, double beamwidth_deg, double steps_per_beamwidth, int most) {
@@ -50,6 +58,7 @@ class PowerRow {
     for (int i = 0; i < azimuths; ++i) sums_.push_back(sums_.back() + (at(i) + at(i + 1)) / 2);
   }
 
+  const std::vector<double>& power() const { return power_; }
   double largest() const { return *std::max_element(power_.begin(), power_.end()); }
   /// Between two azimuths (deg), less than a turn apart.
   double largest(double begin_deg, double end_deg) {
@@ -151,6 +160,40 @@ double powerOf(std::vector<PowerRow>& rows, const Tilts& tilts, const ScanSweep&
   return power;
 }
 
+/// The arcs of a sweep that has many, by tilt.
+class ManyArcs {
+ public:
+  ManyArcs(const ScanSweep& sweep, const Tilts& tilts, int azimuths, SweptPattern pattern)
+      : pattern_(pattern), weights_(tilts.tilts_deg.size()), spans_(tilts.tilts_deg.size()) {
+    std::vector<std::vector<SweptArc>> arcs(tilts.tilts_deg.size());
+    for (std::size_t n = 0; n < sweep.arcs.size(); ++n) arcs[tilts.of_arc[n]].push_back(sweep.arcs[n]);
+    for (std::size_t tilt = 0; tilt < arcs.size(); ++tilt) {
+      if (pattern == SweptPattern::mean) {
+        weights_[tilt] = rowWeightsOf(arcs[tilt], azimuths);
+      } else {
+        spans_[tilt] = rowSpansOf(arcs[tilt], azimuths);
+      }
+    }
+  }
+  /// The power of the interval at one elevation, from azimuth 0 on.
+  std::vector<double> powerOf(const std::vector<PowerRow>& rows) const {
+    std::vector<double> power(rows.front().power().size());
+    for (std::size_t tilt = 0; tilt < rows.size(); ++tilt) {
+      if (pattern_ == SweptPattern::mean) {
+        addMean(rows[tilt].power(), weights_[tilt], power);
+      } else {
+        raiseToLargest(rows[tilt].power(), spans_[tilt], power);
+      }
+    }
+    return power;
+  }
+
+ private:
+  SweptPattern pattern_;
+  std::vector<std::vector<double>> weights_;
+  std::vector<std::vector<RowSpan>> spans_;
+};
+
 /// A dwell as direction cosines of its steering.
 struct Steering {
   float u = 0, v = 0;
@@ -158,8 +201,25 @@ struct Steering {
 };
 
 std::vector<Steering> steeringsOf(const ScanSweep& sweep) {
+  std::vector<SweptDwell> dwells = sweep.dwells;
+  if (dwells.size() > kFewArcs) {  // of many bursts: each position once
+    const auto angles = [](const SweptDwell& dwell) {
+      return std::tie(dwell.azimuth_deg, dwell.elevation_deg);
+    };
+    std::stable_sort(dwells.begin(), dwells.end(),
+                     [&](const SweptDwell& a, const SweptDwell& b) { return angles(a) < angles(b); });
+    std::vector<SweptDwell> joined;
+    for (const SweptDwell& dwell : dwells) {
+      if (joined.empty() || angles(joined.back()) != angles(dwell)) {
+        joined.push_back(dwell);
+      } else {
+        joined.back().share += dwell.share;
+      }
+    }
+    dwells = std::move(joined);
+  }
   std::vector<Steering> steerings;
-  for (const SweptDwell& dwell : sweep.dwells) {
+  for (const SweptDwell& dwell : dwells) {
     const double azimuth_rad = degToRad(dwell.azimuth_deg), elevation_rad = degToRad(dwell.elevation_deg);
     steerings.push_back({static_cast<float>(std::sin(azimuth_rad) * std::cos(elevation_rad)),
                          static_cast<float>(std::sin(elevation_rad)), dwell.share});
@@ -190,12 +250,15 @@ AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPat
   const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 32, 7200);
   const Tilts tilts(sweep);
   std::vector<double> amplitudes(static_cast<std::size_t>(elevations) + 1);
+  std::atomic<int> done{0};
   parallelFor(elevations + 1, 16, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
+      checkpoint();
       std::vector<PowerRow> rows =
           rowsOf(sampled.view, tilts, azimuths, degToRad(angleOf(e, elevations, 180)));
       amplitudes[static_cast<std::size_t>(e)] = std::sqrt(powerOf(rows, tilts, sweep, 0, pattern));
     }
+    reportDone(static_cast<double>(done += end - begin) / (elevations + 1));
   });
   const auto shape = [amplitudes, elevations](double angle_rad) {
     const double at = std::clamp((angle_rad / kPi + 0.5) * elevations, 0.0, double(elevations));
@@ -219,11 +282,22 @@ AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPatt
   const std::vector<Steering> dwells = steeringsOf(sweep);
   std::vector<float> amplitudes((static_cast<std::size_t>(azimuths) + 1) *
                                 (static_cast<std::size_t>(elevations) + 1));
+  std::optional<ManyArcs> many;
+  if (sweep.arcs.size() > kFewArcs) many.emplace(sweep, tilts, azimuths, pattern);
+  std::atomic<int> done{0};
   parallelFor(elevations + 1, 8, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
+      checkpoint();
       const double elevation_rad = degToRad(angleOf(e, elevations, 180));
       std::vector<PowerRow> rows = rowsOf(sampled.view, tilts, azimuths, elevation_rad);
       float* const row = amplitudes.data() + static_cast<std::size_t>(e) * (azimuths + 1);
+      if (many) {
+        const std::vector<double> power = many->powerOf(rows);
+        for (int a = 0; a <= azimuths; ++a)
+          row[a] =
+              static_cast<float>(std::sqrt(power[static_cast<std::size_t>((a + azimuths / 2) % azimuths)]));
+        continue;
+      }
       for (int a = 0; a <= azimuths; ++a) {
         const double azimuth_deg = angleOf(a, azimuths, 360), azimuth_rad = degToRad(azimuth_deg);
         const Vec3d direction{std::cos(elevation_rad) * std::cos(azimuth_rad),
@@ -234,6 +308,7 @@ AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPatt
         row[a] = static_cast<float>(std::sqrt(power));
       }
     }
+    reportDone(static_cast<double>(done += end - begin) / (elevations + 1));
   });
   return describedAntenna(std::make_shared<GridAntenna>(std::move(amplitudes), azimuths + 1, elevations + 1,
                                                         sampled.floor_amplitude),
