@@ -177,6 +177,9 @@ int runCommandLine(const std::vector<std::string>& words, const AddSubcommands& 
         installLog(parsed.global);
         setThreadLimit(parsed.global.threads);
         handleSignals();
+        Work work(&stopFlag());  // a signal stops the loops of every subcommand
+        const WorkScope scope(&work);
+        const WorkLine shown(parsed.global, work);
         return parsed.action();
       },
       app);
