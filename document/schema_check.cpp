@@ -351,6 +351,8 @@ std::string rangeFault(const std::string& name, const std::string& text, double 
   }
   const bool low = spec.minimum_excluded ? value <= spec.minimum : value < spec.minimum;
   if (!low && value <= spec.maximum) return "";
+  if (spec.minimum == spec.maximum)  // a version
+    return fmt::format("{} is {}; this program reads {}", name, text, spec.maximum);
   constexpr int kDigits = 12;  // limits are shown in full
   return fmt::format("{} is {}, outside the allowed range {}{}", name, text,
                      spec.minimum_excluded ? "above " : "",

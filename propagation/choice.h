@@ -6,8 +6,9 @@
 namespace emscape::propagation {
 
 struct ModelChoice {
-  std::string name;  ///< "range step"
-  std::string text;  ///< value with unit, and the reason: "200 m: ..."
+  std::string name;   ///< "range step"
+  std::string text;   ///< value with unit, and the reason: "200 m: ..."
+  double time_s = 0;  ///< of a cost: processor time on one core, estimated
 };
 
 }  // namespace emscape::propagation

@@ -180,6 +180,9 @@ int runCommandLine(const std::vector<std::string>& words, const AddSubcommands& 
         setThreadLimit(parsed.global.threads);
         setDeviceLimit(parsed.global.devices);
         handleSignals();
+        Work work(&stopFlag());  // a signal stops the loops of every subcommand
+        const WorkScope scope(&work);
+        const WorkLine shown(parsed.global, work);
         return parsed.action();
       },
       app);

@@ -21,7 +21,8 @@ namespace {
 constexpr std::chrono::seconds kProgressInterval(10);
 
 std::mutex console_mutex;
-std::string shown_line;  // the progress line on the screen; empty if there is none
+std::string shown_line;     // the progress line on the screen; empty if there is none
+std::string progress_line;  // its first part, of a Progress
 
 /// The text that erases the progress line.
 std::string clearLine() {
@@ -61,6 +62,11 @@ void openStandardStreams() {
 }
 
 void printResult(const std::string& text) {
+  {
+    const std::lock_guard<std::mutex> lock(console_mutex);
+    if (!shown_line.empty()) writeMessage(clearLine());
+    shown_line.clear();
+  }
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) failWriting(errno);
 }
@@ -96,6 +102,7 @@ Progress::~Progress() {
   std::lock_guard<std::mutex> lock(console_mutex);
   writeMessage(clearLine());
   shown_line.clear();
+  progress_line.clear();
 }
 
 void Progress::show(double fraction) {
@@ -110,12 +117,51 @@ void Progress::show(double fraction) {
     const std::string clear = clearLine();
     shown_line = fmt::format("{} [{:#<{}}{:.<{}}] {:.0f} % {}", task_, "", filled, "", kWidth - filled,
                              100 * fraction, left);
+    progress_line = shown_line;
     writeMessage(clear + shown_line);
     return;
   }
   if (fraction <= 0 || fraction >= 1 || now - reported_ < kProgressInterval) return;
   reported_ = now;
   writeMessage(fmt::format("emscape: {}: {:.0f} %, {}\n", task_, 100 * fraction, left));
+}
+
+WorkLine::WorkLine(const GlobalOptions& global, const Work& work) {
+  if (global.quiet || isatty(STDERR_FILENO) == 0) return;
+  try {
+    thread_ = std::thread([this, &work] { follow(work); });
+  } catch (const std::system_error&) {  // a limit of threads: the work goes on without the line
+  }
+}
+
+WorkLine::~WorkLine() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    has_ended_ = true;
+  }
+  ended_.notify_one();
+  thread_.join();
+  const std::lock_guard<std::mutex> lock(console_mutex);
+  writeMessage(clearLine());
+  shown_line.clear();
+}
+
+void WorkLine::follow(const Work& work) {
+  constexpr std::chrono::milliseconds kInterval(500);
+  std::unique_lock<std::mutex> waiting(mutex_);
+  while (!ended_.wait_for(waiting, kInterval, [this] { return has_ended_; })) {
+    const WorkProgress progress = work.progress();
+    std::string line = progress.part;
+    if (!line.empty() && progress.fraction > 0 && progress.fraction < 1)
+      line += fmt::format(": {:.0f} %", 100 * progress.fraction);
+    const std::lock_guard<std::mutex> lock(console_mutex);
+    if (!progress_line.empty()) line = progress_line + (line.empty() ? "" : "  ") + line;
+    if (line == shown_line) continue;
+    const std::string clear = clearLine();
+    shown_line = line;
+    writeMessage(clear + shown_line);
+  }
 }
 
 ProgressSink progressSink(const GlobalOptions& global) {

@@ -4,12 +4,16 @@
 #include <fmt/core.h>
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "apps/common/command.h"
 #include "emscape/base/progress.h"
+#include "emscape/base/work.h"
 
 namespace emscape::app {
 
@@ -62,6 +66,25 @@ class Progress {
   const bool visible_;
   const Clock::time_point start_;
   Clock::time_point reported_;  // time of the last line that is not rewritten
+};
+
+/// While it exists, shows on a terminal which part of a piece of work takes its time, beside the progress.
+/// Silent with --quiet.
+class WorkLine {
+ public:
+  /// @param work  must outlive this
+  WorkLine(const GlobalOptions& global, const Work& work);
+  ~WorkLine();
+  WorkLine(const WorkLine&) = delete;
+  WorkLine& operator=(const WorkLine&) = delete;
+
+ private:
+  void follow(const Work& work);
+
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool has_ended_ = false;
+  std::thread thread_;
 };
 
 /// A progress sink for a library that owns a new Progress for each step.

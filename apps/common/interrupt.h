@@ -23,11 +23,4 @@ int caughtSignal();
 /// @throws Stopped if stopFlag() is set
 void stopIfInterrupted();
 
-/// While it exists, a signal stops the loops of the calling thread, which then throw Stopped.
-class StoppableLoops {
- private:
-  Work work_{&stopFlag()};
-  WorkScope scope_{&work_};
-};
-
 }  // namespace emscape::app

@@ -36,7 +36,6 @@ struct CheckOptions {
 };
 
 int checkFigures(const std::string& folder, const GlobalOptions& global) {
-  const StoppableLoops stoppable;
   const report::CheckReport report = report::checkReport(folder, stopIfInterrupted);
   if (global.json) {
     printJson(report::toJson(report));
@@ -69,7 +68,6 @@ emfield::MeasuredOptions measuredOptions(const CheckOptions& options) {
 }
 
 int checkPaths(const CheckOptions& options, const GlobalOptions& global) {
-  const StoppableLoops stoppable;
   const emfield::MeasuredOptions measured = measuredOptions(options);
   std::shared_ptr<const scenario::Scenario> scenario = std::make_shared<scenario::Scenario>();
   scenario::Emitter emitter;

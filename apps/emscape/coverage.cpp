@@ -49,7 +49,6 @@ void printRow(const study::MapRecord& record) {
 }
 
 int coverage(const CoverageCommand& command, const GlobalOptions& global) {
-  const StoppableLoops stoppable;
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
   const study::CoverageRequest request = report::requestOf(command.maps, scenario->clock);

@@ -76,7 +76,10 @@ void addWork(const std::shared_ptr<const scenario::Scenario>& scenario, Json& js
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
     const emfield::FieldSolver solver(scenario, terrain, options);
-    json["work"] = report::workJson(report::workEstimateOf(solver, *scenario, terrain.get()));
+    const scenario::Snapshot first =
+        scenario::snapshotAt(scenario, terrain.get(), scenario::timesOf(scenario->clock).front());
+    json["work"] = report::workJson(report::workEstimateOf(solver, *scenario, terrain.get(),
+                                                           emfield::modelChoices(first, terrain.get())));
     std::vector<std::string> warnings = warningsOf(*scenario);
     for (const std::string& warning : solver.warnings()) warnings.push_back(warning);
     json["warnings"] = warnings;

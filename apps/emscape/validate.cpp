@@ -116,7 +116,6 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, boo
     emfield::FieldOptions options;
     options.allow_missing_terrain = true;  // reported above
     const emfield::FieldSolver solver(scenario, terrain, options);
-    work = report::workEstimateOf(solver, *scenario, terrain.get());
     const std::vector<std::string> reported = terrain ? terrain->warnings() : std::vector<std::string>{};
     const auto warn = [&](const std::string& warning) {
       Problem problem;
@@ -128,12 +127,16 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, boo
     for (const std::string& warning : solver.warnings()) {
       if (std::find(reported.begin(), reported.end(), warning) == reported.end()) warn(warning);
     }
-    if (!starts) return;  // reported above
+    if (!starts) {  // reported above
+      work = report::workEstimateOf(solver, *scenario, terrain.get(), {});
+      return;
+    }
     const scenario::Snapshot first =
         scenario::snapshotAt(scenario, terrain.get(), scenario::timesOf(scenario->clock).front());
     if (const std::string heights = scenario::outsideHeightsText(first, terrain.get()); !heights.empty())
       warn(heights);
     choices = emfield::modelChoices(first, terrain.get());
+    work = report::workEstimateOf(solver, *scenario, terrain.get(), choices);
   } catch (const Error& error) {
     const bool is_first = std::none_of(problems.begin(), problems.end(), isError);
     if (is_first) status = error.code();
@@ -196,7 +199,7 @@ void addValidate(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->footer(R"(
 Reports all faults at once, each as file:line:column: error: message. Also checks that the elevation files cover the region and that
 no platform is below the ground at any step, and that the field fits into the memory. The last line but one says how much memory
-`simulate` takes at most on the CPU, how long and large a series is, and the time that its field takes, to an order of magnitude.
+`simulate` takes at most on the CPU, how long and large a series is, and the time that its field takes, within a factor of 5.
 What models choose by themselves (keys that are auto) is printed with its reason.
 
 Examples:

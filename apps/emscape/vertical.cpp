@@ -13,6 +13,7 @@
 #include "apps/common/target.h"
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/subcommands.h"
+#include "base/files/folder.h"
 #include "base/files/json_writing.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -114,22 +115,24 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
   };
   const study::VerticalDiagram diagram = compute(request);
   report::logWarnings(diagram.warnings, {scenario});
+  std::optional<study::VerticalDiagram> losses;
+  if (has_areps) {
+    study::VerticalRequest strength = request;
+    strength.quantity = report::arepsQuantity(scenario->emitters[static_cast<std::size_t>(request.emitter)]);
+    losses = compute(strength);
+  }
   stopIfInterrupted();
+  if (!command.areps.empty()) makeFolder(command.areps);  // before anything is written
   writeStudyOutputs(command.outputs,
                     {[&](const std::string& file) { study::plotVertical(diagram, size, file); },
                      [&](const std::string& file) { report::writeVerticalCsv(diagram, file); },
                      [&] { return dumpJson(report::verticalJson(diagram, true)); }});
-  std::optional<report::ArepsComparison> comparison;
-  if (has_areps) {
-    study::VerticalRequest strength = request;
-    strength.quantity = report::arepsQuantity(scenario->emitters[static_cast<std::size_t>(request.emitter)]);
-    const study::VerticalDiagram losses = compute(strength);
-    if (!command.areps.empty()) {
-      for (const std::string& file : report::writeAreps(losses, *scenario, command.areps))
-        logInfo("wrote " + file);
-    }
-    if (other) comparison = report::compareAreps(losses, *scenario, *other);
+  if (!command.areps.empty()) {
+    for (const std::string& file : report::writeAreps(*losses, *scenario, command.areps))
+      logInfo("wrote " + file);
   }
+  std::optional<report::ArepsComparison> comparison;
+  if (other) comparison = report::compareAreps(*losses, *scenario, *other);
   if (global.json) {
     report::Json json = report::verticalJson(diagram, false);
     if (comparison) json["comparison"] = report::arepsComparisonJson(*comparison, command.compare);

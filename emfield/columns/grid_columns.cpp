@@ -9,6 +9,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 
 namespace emscape::emfield {
 namespace {
@@ -98,8 +99,10 @@ constexpr int kPositionsPart = 4096;
 template <class Visit>
 void visitParts(int positions, const Visit& visit) {
   parallelFor((positions + kPositionsPart - 1) / kPositionsPart, 1, [&](int begin, int end) {
-    for (int n = begin; n < end; ++n)
+    for (int n = begin; n < end; ++n) {
+      checkpoint();
       visit(n, n * kPositionsPart, std::min((n + 1) * kPositionsPart, positions));
+    }
   });
 }
 
@@ -155,6 +158,7 @@ void setGround(const scenario::Terrain* terrain, GridColumns& columns) {
   columns.first_valid_k.resize(columns.count());
   if (terrain != nullptr) columns.ground_msl_m.resize(columns.count());
   parallelFor(static_cast<int>(columns.count()), 1024, [&](int begin, int end) {
+    checkpoint();
     for (int c = begin; c < end; ++c) {
       const GridColumn& column = columns.of_grid[c];
       const auto groundAt = [&](float t_m) {
@@ -192,6 +196,7 @@ GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* t
   for (int k = 0; k < grid.dims.z; ++k) result.t_m.push_back(static_cast<float>(grid.center_m(0, 0, k).z));
   parallelFor(grid.dims.y, 1, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
+      checkpoint();
       for (int i = 0; i < grid.dims.x; ++i) {
         const std::size_t c = static_cast<std::size_t>(j) * grid.dims.x + i;
         const Vec3d center = grid.center_m(i, j, 0);

@@ -141,9 +141,12 @@ std::vector<double> layerHeights_m(const TerrainMeshSpec& spec, double height_m)
     throw Error(
         ErrorCode::usage,
         fmt::format("mesh: {} layers (LAYERS), the first of {} m (FIRST_M), each {} times as thick as "
-                    "the one below it (RATIO), reach {:.6g} m above ground, outside the allowed "
-                    "range up to {:.10g} m",
-                    spec.layers, first_m, ratio, heights_m.back(), allowed_m));
+                    "the one below it (RATIO), reach {} above ground, outside the allowed range "
+                    "up to {:.10g} m",
+                    spec.layers, first_m, ratio,
+                    std::isfinite(heights_m.back()) ? fmt::format("{:.6g} m", heights_m.back())
+                                                    : "an infinite height",
+                    allowed_m));
   }
   return heights_m;
 }

@@ -24,7 +24,8 @@ std::vector<EmitterChoice> modelChoices(const scenario::Snapshot& snapshot,
       const auto inputs = pathInputs(scenario, emitter, state.beam, station, terrain, extent);
       for (propagation::ModelChoice& choice :
            model.choices(inputs, radialInputs(station, columns, terrain, extent))) {
-        all.push_back({emitter.name, model.name, std::move(choice.name), std::move(choice.text)});
+        all.push_back(
+            {emitter.name, model.name, std::move(choice.name), std::move(choice.text), choice.time_s});
       }
     });
   }

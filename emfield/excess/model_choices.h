@@ -12,8 +12,9 @@ namespace emscape::emfield {
 struct EmitterChoice {
   std::string emitter;
   std::string model;
-  std::string name;  ///< of the setting: "range step"
-  std::string text;  ///< value with unit, and the reason: "200 m: ..."
+  std::string name;   ///< of the setting: "range step"
+  std::string text;   ///< value with unit, and the reason: "200 m: ..."
+  double time_s = 0;  ///< of a cost: processor time on one core, estimated
 };
 
 /// The choices for the region's voxels at one time. Models without automatic settings have none.

@@ -67,9 +67,7 @@ PatternReach reachOf(const scenario::Antenna& antenna, double elevation_deg) {
 /// @param first_deg  of the arc in the frame
 void addArc(double first_deg, double width_deg, double elevation_deg, double share,
             const scenario::AntennaPtr& antenna, PatternReaches& reaches, BeamPositions& positions) {
-  const double wanted = std::ceil(kStepsPerBeamwidth * width_deg / antenna->beamwidth_az_deg);
-  const int count =
-      width_deg > 0 ? static_cast<int>(std::clamp(wanted, double(kMinSteps), double(kMaxSteps))) : 1;
+  const int count = beamPositions(width_deg, antenna->beamwidth_az_deg);
   const double step_deg = width_deg / count;
   BeamArc arc;
   arc.aim = aimOf(first_deg + step_deg / 2, elevation_deg);
@@ -103,6 +101,12 @@ void addSteered(double steer_u, double steer_v, double share, BeamPositions& pos
 }
 
 }  // namespace
+
+int beamPositions(double width_deg, double beamwidth_deg) {
+  if (width_deg <= 0) return 1;
+  const double wanted = std::ceil(kStepsPerBeamwidth * width_deg / beamwidth_deg);
+  return static_cast<int>(std::clamp(wanted, double(kMinSteps), double(kMaxSteps)));
+}
 
 const PatternReach& PatternReaches::of(const scenario::AntennaPtr& antenna, double elevation_deg) {
   const auto known = known_.find({antenna, elevation_deg});

@@ -21,9 +21,12 @@ class PatternReaches {
   std::map<std::pair<scenario::AntennaPtr, double>, PatternReach> known_;
 };
 
-/// Sets the frame and the positions of a share. Positions of a sweep are a 20th of a beamwidth apart, or
-/// 1/1024 of the sweep if that is less, but at most 16384 to a turn; their shares add up to the part of the
-/// interval in which the emitter is active.
+/// Number of positions of a sweep: a 20th of a beamwidth apart, or 1/1024 of the sweep if that is less, but
+/// at most 16384.
+int beamPositions(double width_deg, double beamwidth_deg);
+
+/// Sets the frame and the positions of a share; the positions' shares add up to the part of the interval in
+/// which the emitter is active.
 /// @param state  active in the interval of the scenario's output that begins at t_s
 void setPositions(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                   const scenario::EmitterState& state, double t_s, PatternReaches& reaches,

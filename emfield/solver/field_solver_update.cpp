@@ -1,5 +1,7 @@
 // An update: finds and computes the changes by the time or an edited scenario.
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -102,7 +104,12 @@ void FieldSolver::Impl::discardResults(bool keeps_geometry) {
 
 void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& changes) {
   findMoved(snapshot, changes);
-  findIntervals(snapshot);
+  const bool is_instant = setup.scenario->output.interval.kind == scenario::IntervalKind::instant;
+  const double intervals_to = is_instant ? 0 : 0.5;
+  {
+    const WorkPart part("", 0, intervals_to);
+    findIntervals(snapshot);
+  }
   findJamming(snapshot, changes);
   findCombined(snapshot, changes);
   findProducts(changes);
@@ -116,10 +123,10 @@ void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& cha
   for (int e : report.moved) {
     if (emitters[e].is_cached) recomputed.push_back(e);
   }
-  constexpr double kGeometryPart = 0.95;
-  const double combine_from = recomputed.empty() ? 0 : kGeometryPart;
+  constexpr double kGeometryTo = 0.95;
+  const double combine_from = recomputed.empty() ? intervals_to : kGeometryTo;
   {
-    const WorkPart part("", 0, combine_from);
+    const WorkPart part("", intervals_to, combine_from);
     computeGeometry(recomputed, false);
   }
   const WorkPart part("sums of the emitters", combine_from, 1);
@@ -179,8 +186,12 @@ void FieldSolver::Impl::findIntervals(const scenario::Snapshot& snapshot) {
       needs_pattern = needs_pattern || (setup.channel_plans[c].reducesPower() &&
                                         std::count(members.begin(), members.end(), static_cast<int>(e)) > 0);
     }
-    cache.interval = intervalBeam(*setup.scenario, setup.scenario->emitters[e], cache.state, snapshot.time_s,
-                                  needs_pattern, before ? &*before : nullptr);
+    const scenario::Emitter& emitter = setup.scenario->emitters[e];
+    const auto count = static_cast<double>(emitters.size()), number = static_cast<double>(e);
+    const WorkPart part(fmt::format("'{}' over the interval, {} of {}", emitter.name, e + 1, emitters.size()),
+                        number / count, (number + 1) / count);
+    cache.interval = intervalBeam(*setup.scenario, emitter, cache.state, snapshot.time_s, needs_pattern,
+                                  before ? &*before : nullptr);
   }
 }
 

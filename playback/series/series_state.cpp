@@ -29,8 +29,8 @@ Json toJson(const SeriesState& state) {
 
 SeriesState fromJson(const Json& json) {
   if (json.at("format_version") != kFormatVersion)
-    throw Error(ErrorCode::bad_input, "format_version is " + json["format_version"].dump() + ", not " +
-                                          std::to_string(kFormatVersion));
+    throw Error(ErrorCode::bad_input, "'format_version' is " + json["format_version"].dump() +
+                                          "; this program reads " + std::to_string(kFormatVersion));
   SeriesState state;
   state.recipe = json.at("recipe");
   if (!state.recipe.is_object()) throw Error(ErrorCode::bad_input, "recipe is not an object");

@@ -173,9 +173,8 @@ void refuseNewerVersion(const std::string& file, const DocumentNodePtr& root) {
   const DocumentNodePtr version = document::valueAt(root, {"schema_version"});
   const auto number = version && !version->quoted ? document::numberOf(version->text) : std::nullopt;
   if (!number || !(*number > kVersion)) return;
-  throw Error(
-      ErrorCode::bad_input, {file, version->position.line, version->position.column},
-      fmt::format("this view is of schema_version {}; this program reads {}", version->text, kVersion));
+  throw Error(ErrorCode::bad_input, {file, version->position.line, version->position.column},
+              fmt::format("'schema_version' is {}; this program reads {}", version->text, kVersion));
 }
 
 Json toJson(const std::vector<Bookmark>& bookmarks) {

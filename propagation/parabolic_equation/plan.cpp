@@ -394,15 +394,17 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   requireWithinLimit(kPeWork, points);
   const double cells = members * plan.azimuths * plan.cells.ranges * plan.cells.heights;
   requireWithinLimit(kPeCells, cells);
+  const double time_s = points * secondsPerPoint(radials.has_terrain);
   plan.choices.push_back(
       {"cost",
        fmt::format("{:.3g} million steps of a height, about {:.2g} s on one core{}; {:.0f} MiB of cells",
-                   points / 1e6, points * secondsPerPoint(radials.has_terrain),
+                   points / 1e6, time_s,
                    plan.grid.intervals > kMaxBlockIntervals
                        ? fmt::format(", which marches also beside a GPU: more than {} height steps",
                                      kMaxBlockIntervals)
                        : "",
-                   cells * sizeof(float) / (1 << 20))});
+                   cells * sizeof(float) / (1 << 20)),
+       time_s});
   return plan;
 }
 

@@ -26,12 +26,14 @@ enum class GasRole {
   included     ///< part of the model's loss
 };
 
-/// CPU time of an emitter's losses on one core, to an order of magnitude. Measured with the four emitters of
-/// scenarios/jacksboro.yaml, which is 30 km wide: the user time of `simulate` of one step, on 40 x 40 x 20
-/// and 100 x 100 x 50 voxels.
+/// Processor time of an emitter's losses on one core (WorkEstimate: within a factor of 5), without marches,
+/// whose time is among ModelInfo::choices.
 struct ModelCost {
-  double voxel_ns = 0;   ///< at one voxel
-  double emitter_s = 0;  ///< of its tables and marches, independent of the grid
+  double column_ns = 0;              ///< of a column of the grid
+  double post_ns = 0;                ///< of a post of the terrain on the path to a column
+  double voxel_ns = 0;               ///< over a smooth earth
+  double voxel_over_terrain_ns = 0;  ///< over terrain
+  double emitter_s = 0;              ///< of its tables
 };
 
 /// The excess of a model that marches outwards, and the march that makes its tables.

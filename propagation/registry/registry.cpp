@@ -49,7 +49,7 @@ ModelInfo freeSpaceRow() {
 ModelInfo horizonRow() {
   ModelInfo row =
       rowOf(PropagationModel::horizon, "line of sight: shadow behind terrain", "ITU-R P.834, P.453");
-  row.cost = {40, 0};
+  row.cost = {300, 0.4, 3, 8, 0};
   row.accuracy = "the shadow's edge within 0.1 m of a walk over the posts of the terrain (FieldAtPosts)";
   row.gases = GasRole::on_request;
   row.casts_shadow = true;
@@ -62,7 +62,7 @@ ModelInfo horizonRow() {
 ModelInfo diffractionRow() {
   ModelInfo row = rowOf(PropagationModel::diffraction, "diffraction over terrain, ITU-R P.526",
                         "ITU-R P.526-15, section 4.5");
-  row.cost = {200, 0};
+  row.cost = {400, 1, 12, 20, 0};
   row.accuracy = "the field within 0.1 dB of path by path at 99 % of voxels (Excess)";
   row.settings = diffractionSettings();
   row.settings_description = "settings of the model; also used above itm's heights";
@@ -83,7 +83,7 @@ ModelInfo diffractionRow() {
 ModelInfo twoRayRow() {
   ModelInfo row = rowOf(PropagationModel::two_ray, "direct and reflected ray over a smooth surface",
                         "Blake 1980; ITU-R P.526-15, P.527-6");
-  row.cost = {400, 0};
+  row.cost = {1200, 0, 180, 180, 0};
   row.accuracy = "the formula, at each voxel";
   row.settings = twoRaySettings();
   row.settings_description = "settings of the model";
@@ -104,7 +104,7 @@ ModelInfo twoRayRow() {
 ModelInfo itmRow() {
   ModelInfo row =
       rowOf(PropagationModel::itm, "Longley-Rice (ITM): terrain, 20 MHz to 20 GHz", "NTIA Report 82-100");
-  row.cost = {1000, 0};
+  row.cost = {2400, 4, 31, 190, 0};
   row.accuracy = "0.0008 dB from NTIA's own program; the field within 1 dB of each path (Excess)";
   row.settings = itmSettings();
   row.settings_description = "settings of the model";
@@ -121,7 +121,7 @@ ModelInfo itmRow() {
 
 ModelInfo p528Row() {
   ModelInfo row = rowOf(PropagationModel::p528, "ITU-R P.528: aeronautical, smooth earth", "ITU-R P.528-5");
-  row.cost = {100, 0.3};
+  row.cost = {300, 0, 15, 15, 0.18};
   row.accuracy = "tables within 0.5 dB, more where the model steps at the horizon (Excess)";
   row.settings = p528Settings();
   row.settings_description = "settings of the model";
@@ -146,7 +146,7 @@ ModelInfo p528Row() {
 ModelInfo p1812Row() {
   ModelInfo row = rowOf(PropagationModel::p1812, "ITU-R P.1812: terrestrial, by share of time and places",
                         "ITU-R P.1812-8");
-  row.cost = {1000, 0};
+  row.cost = {2500, 10, 85, 240, 0};
   row.accuracy =
       "0.0002 dB from ITU-R's validation set; the field within 0.1 dB at 99 % of heights (ExcessModels)";
   row.settings = p1812Settings();
@@ -166,7 +166,7 @@ ModelInfo p1812Row() {
 ModelInfo p452Row() {
   ModelInfo row =
       rowOf(PropagationModel::p452, "ITU-R P.452: interference, by share of time", "ITU-R P.452-18");
-  row.cost = {1000, 0};
+  row.cost = {2500, 10, 85, 240, 0};
   row.accuracy = "0.0003 dB from ITU-R's validation set; the field as p1812";
   row.settings = p452Settings();
   row.settings_description = "settings of the model";
@@ -186,7 +186,7 @@ ModelInfo p452Row() {
 ModelInfo parabolicEquationRow() {
   ModelInfo row = rowOf(PropagationModel::parabolic_equation, "parabolic equation: ducts, lobes, terrain",
                         "Feit and Fleck 1978; Donohue and Kuttler 2000");
-  row.cost = {9000, 3};
+  row.cost = {1000, 5, 200, 300, 0};
   row.accuracy = "0.3 dB from exact fields to 60 dB below free space (emscape check, pe)";
   row.settings = peSettings();
   row.settings_description = "settings of the model; those that are auto are chosen from the scenario";

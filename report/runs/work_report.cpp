@@ -8,7 +8,7 @@
 #include "emfield/solver/field_engine.h"
 #include "emscape/base/parallel.h"
 #include "emscape/scenario/model/clock.h"
-#include "propagation/registry/model_info.h"
+#include "report/runs/work_time.h"
 
 namespace emscape::report {
 namespace {
@@ -17,22 +17,6 @@ constexpr double kMebibyte = 1 << 20;
 
 double mebibytes(std::size_t bytes) {
   return static_cast<double>(bytes) / kMebibyte;
-}
-
-/// CPU time (ns) per voxel, emitter and step once the losses are known: antenna, sum, file. Measured like
-/// propagation::ModelCost, over 20 steps.
-constexpr double kCombine_ns = 5;
-
-/// Time of a computation on all threads. Losses are computed once; those of moving emitters at each step.
-double timeOf(const scenario::Scenario& scenario, double voxels, double steps) {
-  double time_s = 0;
-  for (const scenario::Emitter& emitter : scenario.emitters) {
-    const bool moves = scenario.platforms[static_cast<std::size_t>(emitter.platform)].track.size() > 1;
-    const auto& [voxel_ns, emitter_s] = propagation::modelInfo(emitter.propagation.model).cost;
-    time_s +=
-        (1e-9 * voxel_ns * voxels + emitter_s) * (moves ? steps : 1) + 1e-9 * kCombine_ns * voxels * steps;
-  }
-  return time_s / threadCount();
 }
 
 /// One digit, in the largest unit with a value of at least 1.
@@ -52,14 +36,15 @@ std::string roughly(double time_s) {
 }  // namespace
 
 WorkEstimate workEstimateOf(const emfield::FieldSolver& solver, const scenario::Scenario& scenario,
-                            const scenario::Terrain* terrain) {
+                            const scenario::Terrain* terrain,
+                            const std::vector<emfield::EmitterChoice>& choices) {
   WorkEstimate work;
   work.memory = solver.memoryEstimate();
   work.available_bytes = availableMemory_bytes();
   work.steps = scenario::timesOf(scenario.clock).size();
   const auto voxels = static_cast<std::size_t>(solver.grid().dims.count());
   work.step_bytes = voxels * sizeof(float) * solver.channels().size();
-  work.time_s = timeOf(scenario, static_cast<double>(voxels), static_cast<double>(work.steps));
+  work.time_s = workTimeOf(scenario, terrain, choices).total_s() / threadCount();
   if (terrain != nullptr) work.terrain_bytes = emfield::postBytes(terrain->view());
   return work;
 }
@@ -85,7 +70,7 @@ std::string workText(const WorkEstimate& work) {
   const int threads = threadCount();
   return fmt::format(
       "memory: up to {:.1f} MiB (volumes {:.1f}, emitters {:.1f}{}){}; {} step{} of {:.1f} MiB as .raw; "
-      "time: {} on {} thread{}, to an order of magnitude",
+      "time: {} on {} thread{}, within a factor of 5",
       mebibytes(work.memory.total()), mebibytes(work.memory.volumes), mebibytes(work.memory.emitters),
       available, terrain, work.steps, work.steps == 1 ? "" : "s", mebibytes(work.step_bytes),
       roughly(work.time_s), threads, threads == 1 ? "" : "s");

@@ -92,6 +92,7 @@ class PowerRow {
       sums_.push_back(sums_.back() + (at(i) + at(i + 1)) / 2 * azimuths.width(i));
   }
 
+  const std::vector<double>& power() const { return power_; }
   double largest() const { return *std::max_element(power_.begin(), power_.end()); }
   /// Between two azimuths (deg), less than a turn apart.
   double largest(double begin_deg, double end_deg) {

@@ -1,19 +1,26 @@
 #include "scenario/scan/swept_antenna.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "scenario/antenna/pattern.h"
 #include "scenario/antenna/refined_grid.h"
 #include "scenario/antenna/tables.h"
+#include "scenario/scan/many_arcs.h"
 #include "scenario/scan/power_row.h"
 
 namespace emscape::scenario {
 namespace {
+
+/// More are computed by many_arcs.h, but for beams so narrow that their table is refined.
+constexpr std::size_t kFewArcs = 128;
 
 /// Number of intervals of a table: a span with a number of steps per beamwidth; even, up to a limit.
 int intervalsFor(double span_deg, double beamwidth_deg, double steps_per_beamwidth, int most) {
@@ -75,6 +82,40 @@ double powerOf(std::vector<PowerRow>& rows, const Tilts& tilts, const ScanSweep&
   return power;
 }
 
+/// The arcs of a sweep that has many, by tilt.
+class ManyArcs {
+ public:
+  ManyArcs(const ScanSweep& sweep, const Tilts& tilts, int azimuths, SweptPattern pattern)
+      : pattern_(pattern), weights_(tilts.tilts_deg.size()), spans_(tilts.tilts_deg.size()) {
+    std::vector<std::vector<SweptArc>> arcs(tilts.tilts_deg.size());
+    for (std::size_t n = 0; n < sweep.arcs.size(); ++n) arcs[tilts.of_arc[n]].push_back(sweep.arcs[n]);
+    for (std::size_t tilt = 0; tilt < arcs.size(); ++tilt) {
+      if (pattern == SweptPattern::mean) {
+        weights_[tilt] = rowWeightsOf(arcs[tilt], azimuths);
+      } else {
+        spans_[tilt] = rowSpansOf(arcs[tilt], azimuths);
+      }
+    }
+  }
+  /// The power of the interval at one elevation, from azimuth 0 on.
+  std::vector<double> powerOf(const std::vector<PowerRow>& rows) const {
+    std::vector<double> power(rows.front().power().size());
+    for (std::size_t tilt = 0; tilt < rows.size(); ++tilt) {
+      if (pattern_ == SweptPattern::mean) {
+        addMean(rows[tilt].power(), weights_[tilt], power);
+      } else {
+        raiseToLargest(rows[tilt].power(), spans_[tilt], power);
+      }
+    }
+    return power;
+  }
+
+ private:
+  SweptPattern pattern_;
+  std::vector<std::vector<double>> weights_;
+  std::vector<std::vector<RowSpan>> spans_;
+};
+
 /// A dwell as direction cosines of its steering.
 struct Steering {
   float u = 0, v = 0;
@@ -82,8 +123,25 @@ struct Steering {
 };
 
 std::vector<Steering> steeringsOf(const ScanSweep& sweep) {
+  std::vector<SweptDwell> dwells = sweep.dwells;
+  if (dwells.size() > kFewArcs) {  // of many bursts: each position once
+    const auto angles = [](const SweptDwell& dwell) {
+      return std::tie(dwell.azimuth_deg, dwell.elevation_deg);
+    };
+    std::stable_sort(dwells.begin(), dwells.end(),
+                     [&](const SweptDwell& a, const SweptDwell& b) { return angles(a) < angles(b); });
+    std::vector<SweptDwell> joined;
+    for (const SweptDwell& dwell : dwells) {
+      if (joined.empty() || angles(joined.back()) != angles(dwell)) {
+        joined.push_back(dwell);
+      } else {
+        joined.back().share += dwell.share;
+      }
+    }
+    dwells = std::move(joined);
+  }
   std::vector<Steering> steerings;
-  for (const SweptDwell& dwell : sweep.dwells) {
+  for (const SweptDwell& dwell : dwells) {
     const double azimuth_rad = degToRad(dwell.azimuth_deg), elevation_rad = degToRad(dwell.elevation_deg);
     steerings.push_back({static_cast<float>(std::sin(azimuth_rad) * std::cos(elevation_rad)),
                          static_cast<float>(std::sin(elevation_rad)), dwell.share});
@@ -206,12 +264,15 @@ AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPat
                 : RowAzimuths(intervalsFor(360, antenna.beamwidth_az_deg, 8, kMaxAzimuths));
   const Tilts tilts(sweep);
   std::vector<double> amplitudes(static_cast<std::size_t>(elevations.count()));
+  std::atomic<int> done{0};
   parallelFor(elevations.count(), 16, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
+      checkpoint();
       std::vector<PowerRow> rows =
           rowsOf(sampled.view, tilts, azimuths, degToRad(elevations.angles_deg[static_cast<std::size_t>(e)]));
       amplitudes[static_cast<std::size_t>(e)] = std::sqrt(powerOf(rows, tilts, sweep, 0, pattern));
     }
+    reportDone(static_cast<double>(done += end - begin) / elevations.count());
   });
   const std::vector<float> positions = is_narrow ? elevations.refined->positions() : std::vector<float>();
   const int last = elevations.count() - 1;
@@ -243,11 +304,24 @@ AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPatt
   const int count = columns.count();
   std::vector<float> amplitudes(static_cast<std::size_t>(count) *
                                 static_cast<std::size_t>(elevations.count()));
+  std::optional<ManyArcs> many;
+  if (sweep.arcs.size() > kFewArcs && !columns.refined) many.emplace(sweep, tilts, count - 1, pattern);
+  std::atomic<int> done{0};
   parallelFor(elevations.count(), 8, [&, &columns = columns, &elevations = elevations](int begin, int end) {
     for (int e = begin; e < end; ++e) {
+      checkpoint();
       const double elevation_rad = degToRad(elevations.angles_deg[static_cast<std::size_t>(e)]);
       std::vector<PowerRow> rows = rowsOf(sampled.view, tilts, azimuths, elevation_rad);
       float* const row = amplitudes.data() + static_cast<std::size_t>(e) * static_cast<std::size_t>(count);
+      if (many) {
+        const std::vector<double> power = many->powerOf(rows);
+        const int azimuths_of_turn = count - 1;
+        for (int a = 0; a < count; ++a) {
+          const int from_north = (a + azimuths_of_turn / 2) % azimuths_of_turn;
+          row[a] = static_cast<float>(std::sqrt(power[static_cast<std::size_t>(from_north)]));
+        }
+        continue;
+      }
       for (int a = 0; a < count; ++a) {
         const double azimuth_deg = columns.angles_deg[static_cast<std::size_t>(a)],
                      azimuth_rad = degToRad(azimuth_deg);
@@ -259,6 +333,7 @@ AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPatt
         row[a] = static_cast<float>(std::sqrt(power));
       }
     }
+    reportDone(static_cast<double>(done += end - begin) / elevations.count());
   });
   std::shared_ptr<Antenna> swept;
   if (columns.refined) {

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <system_error>
+
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
 
@@ -14,7 +17,12 @@ GDALDriverH driverOf(const char* name) {
 }
 
 void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
-  throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
+  const int cause = errno;
+  std::string text = messages.explain("cannot be written");
+  // GDAL does not always say why.
+  const bool is_limit = cause == EMFILE || cause == ENFILE || cause == ENOSPC || cause == EDQUOT;
+  if (!messages.hasFailure() && is_limit) text += ": " + std::generic_category().message(cause);
+  throw Error(ErrorCode::other, file.string() + ": " + text);
 }
 
 gdal::Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file) {

@@ -50,7 +50,7 @@ TEST_F(Validate, ReportsMemoryOfTheField) {
             work.at("step_mib"));
 }
 
-TEST_F(Validate, EstimatesTimeWithinAnOrderOfMagnitude) {
+TEST_F(Validate, EstimatesTimeByVoxelsModelsAndThreads) {
   const std::string scenario = shippedScenario("jacksboro.yaml");
   const auto workOf = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words{"validate", scenario, "--json", "--threads", "1", "--set", "duration_s=0"};
@@ -59,14 +59,15 @@ TEST_F(Validate, EstimatesTimeWithinAnOrderOfMagnitude) {
   };
   const json coarse = workOf({"--set", "region.dims=[40, 40, 20]"});
   const json fine = workOf({"--set", "region.dims=[80, 80, 40]"});
-  EXPECT_NEAR(fine.at("time_s").get<double>() / coarse.at("time_s").get<double>(), 8, 1e-9);
+  EXPECT_GT(fine.at("time_s"), 4 * coarse.at("time_s").get<double>()) << "as the columns";
+  EXPECT_LT(fine.at("time_s"), 8 * coarse.at("time_s").get<double>()) << "as the voxels";
   EXPECT_GT(coarse.at("terrain_mib"), 0.1);
   const json itm =
       workOf({"--set", "region.dims=[80, 80, 40]", "--set", "emitters.search radar.propagation=itm"});
   EXPECT_GT(itm.at("time_s"), 2 * fine.at("time_s").get<double>());
   EXPECT_EQ(itm.at("threads"), 1);
   EXPECT_THAT(run({"validate", scenario, "--threads", "1"}).out,
-              HasSubstr("on 1 thread, to an order of magnitude"));
+              HasSubstr("on 1 thread, within a factor of 5"));
 }
 
 TEST_F(Validate, RefusesAFieldThatDoesNotFitIntoTheMemory) {

@@ -116,8 +116,7 @@ TEST(ViewState, FaultyStatesAreBadInput) {
   };
   EXPECT_THAT(refusalOf("{\"schema_version\": 1,\n \"thme\": \"dark\"}"),
               HasSubstr("a.json:2:2: unknown key 'thme' of the view; did you mean 'theme'?"));
-  EXPECT_THAT(refusalOf("{\"schema_version\": 9}"),
-              HasSubstr("this view is of schema_version 9; this program reads 1"));
+  EXPECT_THAT(refusalOf("{\"schema_version\": 9}"), HasSubstr("'schema_version' is 9; this program reads 1"));
   EXPECT_THAT(refusalOf("{\"schema_version\": 1, \"edits\": [\"emitters.nobody.power_w=1\"]}"),
               HasSubstr("there is no emitter 'nobody'"));
   EXPECT_EQ(render({"-o", folder / "a.png", "--state", folder / "none.json"}).status, 3);

@@ -232,7 +232,7 @@ TEST(ViewState, AllErrorsAreReportedAtOnce) {
 
 TEST(ViewState, ANewerVersionIsRefusedWithOneError) {
   EXPECT_EQ(refusalOf("{\"schema_version\": 2, \"new\": 1, \"newer\": 2}"),
-            "a.json:1:20: this view is of schema_version 2; this program reads 1");
+            "a.json:1:20: 'schema_version' is 2; this program reads 1");
 }
 
 TEST(ViewState, TransferFunctionHasFormOfItsOwnFile) {

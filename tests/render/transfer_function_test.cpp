@@ -189,8 +189,7 @@ TEST(TransferFile, ErrorsHaveLocationAndReason) {
   EXPECT_THAT(errorOf(head + " \"colour\": 1}"), HasSubstr("tf.json:4:2: unknown key 'colour'"));
   EXPECT_THAT(errorOf(head + " \"domain\": \"value\"}"),
               HasSubstr("tf.json:4:2: duplicate key 'domain'; first at line 2"));
-  EXPECT_THAT(errorOf("{\"schema_version\": 2}"),
-              HasSubstr("'schema_version' is 2, outside the allowed range 1 to 1"));
+  EXPECT_THAT(errorOf("{\"schema_version\": 2}"), HasSubstr("'schema_version' is 2; this program reads 1"));
   EXPECT_THAT(errorOf("{\"schema_version\": 1, \"domain\": "), HasSubstr("tf.json:1:"));
   EXPECT_THAT(errorOf("[]"), HasSubstr("transfer function must be a set of keys, not a list"));
   EXPECT_THAT(errorOf(""), HasSubstr("the file is empty"));

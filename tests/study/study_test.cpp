@@ -359,6 +359,12 @@ TEST(Study, AManifestOfAnotherProgramIsRefused) {
                       ErrorCode::bad_input),
         HasSubstr("manifest.json: is no manifest of a study of emscape; choose another folder"));
   }
+  const test::TemporaryFolder folder;
+  folder.write("manifest.json",
+               R"({"schema_version": 2, "parts": 1, "hash": ")" + study.spec().hash + R"("})");
+  EXPECT_THAT(test::errorOf([&] { StudyFolder(folder.path(), study.spec(), study.plan(), "test").begin(1); },
+                            ErrorCode::bad_input),
+              HasSubstr("manifest.json: 'schema_version' is 2; this program reads 1; choose another folder"));
 }
 
 TEST(Study, APartOfAnotherStudyIsRefused) {

@@ -117,6 +117,8 @@ TEST(RefusalText, SpeaksOfValuesNotOfPlacesInFiles) {
             "height above ground is -5 m, outside of 0 to 1 m");
   EXPECT_EQ(refusalText("dir/a b.yaml:62:11: 'emitters' has 'jammer' twice; first at line 29", edits),
             "another emitter is named 'jammer'");
+  const std::string longest(1000000, 'x');
+  EXPECT_EQ(refusalText(longest + ":2: '" + longest + "' is unknown", {}), "'" + longest + "' is unknown");
   EXPECT_EQ(refusalText("a.yaml:2: 'frequency_hz' must be a number (Hz)\na.yaml:3:1: there is no 'b'", edits),
             "frequency must be a number (Hz)\nthere is no 'b'");
 }

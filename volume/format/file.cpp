@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <regex>
 #include <set>
 #include <tuple>
 
@@ -84,12 +83,13 @@ const Format& requireFormat(const fs::path& path, bool to_write = false) {
 /// NAME_ and the number of NAME_NNNN; the whole stem and -1 for names of another form.
 struct SeriesName {
   explicit SeriesName(const fs::path& path) : base(path.stem().string()) {
-    static const std::regex kNumbered("(.*_)([0-9]{4,9})");
-    std::smatch parts;
-    const std::string stem = base;
-    if (!std::regex_match(stem, parts, kNumbered)) return;
-    base = parts[1];
-    number = std::stoi(parts[2]);
+    constexpr std::size_t kMinDigits = 4, kMaxDigits = 9;
+    const std::size_t before = base.find_last_not_of("0123456789");
+    if (before == std::string::npos || base[before] != '_') return;
+    const std::size_t digits = base.size() - before - 1;
+    if (digits < kMinDigits || digits > kMaxDigits) return;
+    number = std::stoi(base.substr(before + 1));
+    base.erase(before + 1);
   }
   bool operator<(const SeriesName& other) const {
     return std::tie(base, number) < std::tie(other.base, other.number);

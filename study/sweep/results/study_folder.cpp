@@ -29,6 +29,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kManifest = "manifest.json";
+constexpr int kManifestVersion = 1;
 constexpr const char* kCsv = "results.csv";
 constexpr const char* kNetcdf = "results.nc";
 
@@ -84,6 +85,12 @@ std::optional<StudyFolder::Manifest> StudyFolder::readManifest() const {
       throw Error(ErrorCode::bad_input, {file.string(), 0, 0},
                   "is no manifest of a study of emscape; choose another folder");
     }
+    const Json version = json.value("schema_version", Json());
+    if (version != kManifestVersion) {
+      throw Error(ErrorCode::bad_input, {file.string(), 0, 0},
+                  fmt::format("'schema_version' is {}; this program reads {}; choose another folder",
+                              version.dump(), kManifestVersion));
+    }
     const std::string hash = json["hash"];
     if (hash != study_.hash) failForeign(file, hash, study_.hash);
     const Manifest manifest{partsOf(json), keptOf(json)};
@@ -123,7 +130,7 @@ void StudyFolder::begin(int parts, std::optional<KeptFiles> kept) {
   kept_ = kept.value_or(KeptFiles::nothing);
   const VariantSet& variants = study_.variants;
   writeWhole(file, [&](std::ostream& out) {
-    out << "{\n  \"schema_version\": 1,\n  \"emscape\": " << Json(version_)
+    out << "{\n  \"schema_version\": " << kManifestVersion << ",\n  \"emscape\": " << Json(version_)
         << ",\n  \"name\": " << Json(study_.name) << ",\n  \"hash\": " << Json(study_.hash)
         << ",\n  \"parts\": " << parts;
     if (kept_ != KeptFiles::nothing) out << ",\n  \"kept\": " << Json(toString(kept_));

@@ -1,0 +1,173 @@
+#include "report/runs/work_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "emfield/ground/ground_posts.h"
+#include "emfield/solver/beam_positions.h"
+#include "emfield/solver/field_plan.h"
+#include "emfield/solver/interval_beam.h"
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "propagation/registry/model_info.h"
+#include "scenario/scan/swept_antenna.h"
+
+namespace emscape::report {
+namespace {
+
+using scenario::Emitter;
+using scenario::IntervalKind;
+using scenario::Scenario;
+
+// Processor times (ns) of the field's loops, one core of 2020.
+constexpr double kColumn_ns = 150;       ///< position and ground of a column of the grid
+constexpr double kPower_ns = 3;          ///< antenna and sum of a voxel and emitter
+constexpr double kEcho_ns = 15;          ///< a radar's look at a voxel
+constexpr double kJammer_ns = 8;         ///< a jammer seen by that look
+constexpr double kClutter_ns = 60;       ///< clutter beside the echo
+constexpr double kArc_ns = 4;            ///< an arc of looks or passes at a voxel
+constexpr double kPosition_ns = 4;       ///< a position of a beam, for occupancy
+constexpr double kProduct_ns = 3;        ///< a channel's value
+constexpr double kPatternEntry_ns = 10;  ///< an entry of the pattern of an interval, per tilt or dwell
+
+double metresApart(const GeodeticPosition& a, const GeodeticPosition& b) {
+  return length(toEcef(a) - toEcef(b));
+}
+
+/// Mean length of the paths from an emitter to the region's columns.
+double meanPath_m(const Scenario& scenario, const Emitter& emitter) {
+  constexpr int kSamples = 5;
+  const volume::Grid grid = emfield::gridOf(scenario.region);
+  const GeoFrame frame(grid.frame);
+  const scenario::SitePosition& site =
+      scenario.platforms[static_cast<std::size_t>(emitter.platform)].track.front().position;
+  double sum_m = 0;
+  for (int n = 0; n < kSamples * kSamples; ++n) {
+    const int i = (2 * (n % kSamples) + 1) * grid.dims.x / (2 * kSamples);
+    const int j = (2 * (n / kSamples) + 1) * grid.dims.y / (2 * kSamples);
+    const GeodeticPosition column = frame.toGeodetic(grid.center_m(i, j, 0));
+    sum_m += metresApart({site.latitude_deg, site.longitude_deg, 0},
+                         {column.latitude_deg, column.longitude_deg, 0});
+  }
+  return sum_m / (kSamples * kSamples);
+}
+
+/// The sweep of an emitter's beam in the interval that begins at a time, and a radar's looks.
+emfield::IntervalBeam beamOf(const Scenario& scenario, const Emitter& emitter, double t_s) {
+  return emfield::intervalBeam(scenario, emitter, {}, t_s, false, nullptr);
+}
+
+/// Entries of the pattern of an interval, times the positions from which each is computed.
+double patternEntries(const Emitter& emitter, const scenario::ScanSweep& sweep) {
+  const auto entries = [](double span_deg, double beamwidth_deg, int most) {
+    return std::min(span_deg / beamwidth_deg * 16, double(most));
+  };
+  const double azimuths = entries(360, emitter.antenna->beamwidth_az_deg, scenario::kMaxSweptAzimuths);
+  const double elevations = entries(180, emitter.antenna->beamwidth_el_deg, scenario::kMaxSweptAzimuths / 2);
+  std::set<double> tilts;
+  for (const scenario::SweptArc& arc : sweep.arcs) tilts.insert(arc.elevation_deg);
+  const auto arcs = double(sweep.arcs.size());
+  // Many arcs of a tilt are one convolution.
+  const double convolved = std::min(arcs, double(tilts.size()) * azimuths / 64);
+  return azimuths * elevations * (double(tilts.size() + sweep.dwells.size()) + convolved);
+}
+
+/// Positions of a beam that occupancy tries at a voxel, on average over some ranges: those from which it may
+/// be above the threshold; each arc counts as one more. With a reflected ray all are tried, twice.
+double triedPositions(const Scenario& scenario, const Emitter& emitter, const scenario::ScanSweep& sweep,
+                      double threshold_wm2) {
+  if (emfield::stays(sweep)) return 1;
+  const double beamwidth_deg = emitter.antenna->beamwidth_az_deg;
+  double all = 0;
+  for (const scenario::SweptArc& arc : sweep.arcs)
+    all += emfield::beamPositions(std::min(arc.width_deg, emfield::kTurn_deg), beamwidth_deg);
+  const auto arcs = double(sweep.arcs.size() + sweep.dwells.size());
+  if (propagation::modelInfo(emitter.propagation.model).has_reflected_ray) return arcs + 2 * all;
+  const double eirp_w = emitter.power_w * dbToRatio(emitter.antenna->gain_dbi - emitter.losses_db);
+  const double side_lobes = std::pow(double(emitter.antenna->view().side_lobe_amplitude), 2);
+  const double mean_path_m = meanPath_m(scenario, emitter);
+  constexpr double kPaths[] = {0.3, 0.7, 1.3}, kHalfPower_db = 3;
+  double reached = 0;
+  for (const double part : kPaths) {
+    const double path_m = part * mean_path_m;
+    const double level = threshold_wm2 * 4 * kPi * path_m * path_m / eirp_w;
+    if (level < side_lobes || level >= 1) continue;  // always above, or never
+    reached +=
+        std::min(beamwidth_deg * std::sqrt(-ratioToDb(level) / kHalfPower_db) / emfield::kTurn_deg, 1.0);
+  }
+  return arcs + all * reached / double(std::size(kPaths));
+}
+
+/// Time (ns) of an emitter's contribution to a channel at one voxel.
+double voxel_ns(const emfield::FieldPlan& plan, std::size_t channel, int e,
+                const std::optional<emfield::IntervalBeam>& beam) {
+  const emfield::ChannelPlan& of_channel = plan.channel_plans[channel];
+  const Emitter& emitter = plan.scenario->emitters[static_cast<std::size_t>(e)];
+  if (of_channel.occupancy_threshold_wm2 > 0) {
+    return kPosition_ns * triedPositions(*plan.scenario, emitter, beam->of_sweep,
+                                         static_cast<double>(of_channel.occupancy_threshold_wm2));
+  }
+  if (of_channel.reducesPower()) return kPower_ns;
+  const auto& radars = plan.scenario->emitters;
+  const auto jammers = std::count_if(radars.begin(), radars.end(), [](const Emitter& other) {
+    return other.kind == scenario::EmitterKind::jammer;
+  });
+  double arcs = 0;
+  if (beam) {
+    const emfield::IntervalArcs& found = beam->looks.arcs;
+    arcs = double(found.directions.size() + found.counts.size() + found.passes.size());
+  }
+  const bool has_jamming = scenario::needsJammer(plan.channels[channel].quantity);
+  return kEcho_ns + (has_jamming ? kJammer_ns * double(jammers) : 0) + (emitter.clutter ? kClutter_ns : 0) +
+         kArc_ns * arcs;
+}
+
+}  // namespace
+
+WorkTime workTimeOf(const Scenario& scenario, const scenario::Terrain* terrain,
+                    const std::vector<emfield::EmitterChoice>& choices) {
+  const emfield::FieldPlan plan =
+      emfield::makePlan(std::make_shared<const Scenario>(scenario), emfield::FieldOptions());
+  const std::vector<double> times_s = scenario::timesOf(scenario.clock);
+  const auto steps = double(times_s.size());
+  const auto voxels = double(scenario.region.dims.count());
+  const double columns = double(scenario.region.dims.x) * scenario.region.dims.y;
+  const double post_m = emfield::postSpacing_m(terrain) / 2;
+  const bool is_instant = scenario.output.interval.kind == IntervalKind::instant;
+  double losses_ns = kColumn_ns * columns, patterns_ns = 0, sums_ns = 0;
+  for (std::size_t e = 0; e < scenario.emitters.size(); ++e) {
+    const Emitter& emitter = scenario.emitters[e];
+    if (!emitter.enabled) continue;
+    const bool moves = scenario.platforms[static_cast<std::size_t>(emitter.platform)].track.size() > 1;
+    const propagation::ModelCost& cost = propagation::modelInfo(emitter.propagation.model).cost;
+    const double posts = terrain == nullptr ? 0 : meanPath_m(scenario, emitter) / post_m;
+    double once_ns = (cost.column_ns + cost.post_ns * posts) * columns + 1e9 * cost.emitter_s +
+                     (terrain == nullptr ? cost.voxel_ns : cost.voxel_over_terrain_ns) * voxels;
+    for (const emfield::EmitterChoice& choice : choices) {
+      if (choice.emitter == emitter.name) once_ns += 1e9 * choice.time_s;
+    }
+    losses_ns += once_ns * (moves ? steps : 1);
+    std::optional<emfield::IntervalBeam> beam;
+    if (!is_instant) beam = beamOf(scenario, emitter, times_s.front());
+    bool has_power = false;
+    for (std::size_t c = 0; c < plan.channels.size(); ++c) {
+      const std::vector<int>& members = plan.channels[c].emitters;
+      if (std::find(members.begin(), members.end(), static_cast<int>(e)) == members.end()) continue;
+      has_power |= plan.channel_plans[c].reducesPower();
+      sums_ns += voxel_ns(plan, c, static_cast<int>(e), beam) * voxels * steps;
+    }
+    if (beam && has_power && !emfield::stays(beam->of_sweep)) {
+      const bool is_the_same = steps > 1 && beamOf(scenario, emitter, times_s[1]).of_sweep == beam->of_sweep;
+      patterns_ns += kPatternEntry_ns * patternEntries(emitter, beam->of_sweep) * (is_the_same ? 1 : steps);
+    }
+  }
+  sums_ns += kProduct_ns * voxels * double(plan.channels.size()) * steps;
+  return {1e-9 * losses_ns, 1e-9 * patterns_ns, 1e-9 * sums_ns};
+}
+
+}  // namespace emscape::report
