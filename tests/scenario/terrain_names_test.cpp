@@ -425,6 +425,18 @@ TEST_F(TerrainNames, WhatWasDownloadedInPlaceOfHeightsIsNamed) {
   EXPECT_THAT(problemOf(folder_.write("c.tif", "%PDF-1.4\n")), HasSubstr("is a PDF document"));
 }
 
+TEST_F(TerrainNames, GroundControlPointsBecomeAGridByTheCommandOfTheMessage) {
+  if (!run("gdal_translate -gcp 0 0 10 50 -gcp 10 0 11 50 -gcp 10 10 11 49 -gcp 0 10 10 49 "
+           "-a_srs EPSG:4326 " +
+           raster("a.tif") + " gcp.tif"))
+    GTEST_SKIP() << "gdal_translate is not installed";
+  const std::string problem = problemOf(folder_ / "gcp.tif");
+  const std::size_t begin = problem.find("gdalwarp"), end = problem.find(" makes a grid");
+  ASSERT_LT(end, problem.size()) << problem;
+  run(problem.substr(begin, end - begin));
+  EXPECT_NEAR(load({folder_ / "HEIGHTS.tif"})->heightMsl_m(49.5, 10.5), 1050, 10);
+}
+
 TEST_F(TerrainNames, LatitudesOfTilesMayHaveThreeDigits) {
   ASSERT_TRUE(cornerInName("ALPSMLC30_N034E135_DSM.tif"));
   EXPECT_EQ(cornerInName("N034E135_AVE_DSM.tif")->latitude_deg, 34);
