@@ -69,7 +69,8 @@ struct Extent {
 
 /// Sets the slack of blocks; NaN if a block is wider than the bounds cover. The box of a block contains the
 /// positions of all paths; the slope in it does not exceed the bound.
-EMSCAPE_SIMD_CLONES void boundBlocks(const ChordTask& task, int first_block, int end_block, float* slack_m) {
+EMSCAPE_SIMD_CLONES void boundBlocks(const ChordTask& task, int first_block, int end_block, float* slack_m,
+                                     float* across_slack_m) {
   constexpr float kMargin = 0.02f;      // posts: for rounding, and for the curvature of a block
   constexpr float kRounding_m = 0.01f;  // of heights
   const SectorChord chord = task.chord;
@@ -101,8 +102,10 @@ EMSCAPE_SIMD_CLONES void boundBlocks(const ChordTask& task, int first_block, int
     const float slope = steepest[j * row_windows + i];
     const float width = columns.high - columns.low, height = rows.high - rows.low;
     const float longer = width > height ? width : height;
-    const float away_m = half_width_rad * last_m[b] + between_m[b];
-    slack_m[b] = longer <= TerrainBounds::kMaxExtent ? slope * away_m + kRounding_m : NAN;
+    const float across_m = half_width_rad * last_m[b];
+    const bool is_bounded = longer <= TerrainBounds::kMaxExtent;
+    slack_m[b] = is_bounded ? slope * (across_m + between_m[b]) + kRounding_m : NAN;
+    across_slack_m[b] = is_bounded ? slope * across_m + kRounding_m : NAN;
   }
 }
 
@@ -183,6 +186,7 @@ SectorTerrain::SectorTerrain(const Station& station, const GroundPosts& ground, 
   last_part_.resize(blocks);
   corner_.resize(blocks);
   slack_m_.resize(blocks);
+  across_slack_m_.resize(blocks);
 }
 
 void SectorTerrain::read(const PathSectors::Azimuth& middle, double half_width_rad, int posts) {
@@ -201,7 +205,7 @@ void SectorTerrain::read(const PathSectors::Azimuth& middle, double half_width_r
     boundBlocks(
         {chords_[index], posts_.firstPart(), posts_.lastPart(), posts_.last_m(), posts_.between_m(),
          posts_.part()[last], bounds_.steepest(), bounds_.rowWindows(), static_cast<float>(half_width_rad)},
-        first / kBlock, blocks(), slack_m_.data());
+        first / kBlock, blocks(), slack_m_.data(), across_slack_m_.data());
     if (posts_read_ < end) break;
   }
   if (posts_read_ == 0) return;

@@ -94,6 +94,8 @@ class SectorTerrain {
   /// Per block: bound of the difference (m) between the height at the post that stands for a range and the
   /// heights at this range anywhere in the sector; infinity if there may be a void.
   const float* slack_m() const { return slack_m_.data(); }
+  /// The same between heights at equal ranges.
+  const float* acrossSlack_m() const { return across_slack_m_.data(); }
   const SectorChord& chord(int index) const { return chords_[index]; }
   int rowPosts() const { return raster_->columns; }
 
@@ -116,7 +118,7 @@ class SectorTerrain {
   /// then of the rows; the part of the last post that is known; and the corner's index in the raster.
   std::vector<float> parabolas_[6], last_part_;
   std::vector<int> corner_;
-  std::vector<float> height_msl_m_, slack_m_;
+  std::vector<float> height_msl_m_, slack_m_, across_slack_m_;
 };
 
 }  // namespace emscape::emfield

@@ -383,7 +383,7 @@ void setTrend(const Posts& posts, const SectorTerrain& terrain, const SectorBoun
     if (post % kBlock != 0) continue;
     const int beyond = std::min(post + kBlock, posts.of_sectors->count() - 1);
     const double length_m = posts.exact_range_m[beyond] - posts.exact_range_m[std::max(post - 1, 0)];
-    differences_m2 += 2 * length_m * static_cast<double>(terrain.slack_m()[post / kBlock]);
+    differences_m2 += 2 * length_m * static_cast<double>(terrain.acrossSlack_m()[post / kBlock]);
     trend.before.push_back(sums);
     trend.differences_m2.push_back(static_cast<float>(differences_m2));
   }

@@ -57,16 +57,15 @@ struct GroundPosts {
   }
 };
 
-/// Largest number of posts of a profile within the ranges of regular posts, with one at the receivers.
+/// Largest number of posts of a profile within the ranges of regular posts, with one at the receivers. Does
+/// not read the ranges.
 EMSCAPE_HD inline int maxPosts(const Station& station, const GroundPosts& ground, bool at_crossings) {
   const int regular = ground.range_count + 1;
-  if (!at_crossings || ground.is_smooth) return regular;
-  const double farthest_m = ground.ranges_m[ground.range_count - 1];
+  if (!at_crossings || !(ground.crossings_per_m > 0)) return regular;
+  // Of each chord either the crossings or the regular posts, which are at least 2/3 of the most crossings.
+  const double farthest_m = 1.5 * ground.range_count / ground.crossings_per_m;
   const double chords = 1 + farthest_m / maxChord_m(std::fabs(station.geodesy.station.up.z));
-  // Of each chord either the crossings or the regular posts, of which there are two thirds of the most
-  // crossings.
-  return regular + ground.maxCrossings(farthest_m) / 3 +
-         static_cast<int>(chords) * (ground.maxCrossings(0) + 2);
+  return regular + ground.range_count / 2 + static_cast<int>(chords) * (ground.maxCrossings(0) + 2);
 }
 
 /// The ground below an emitter's paths, in host memory. Pointers are valid as long as both arguments.
