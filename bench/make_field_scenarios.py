@@ -76,7 +76,7 @@ def scenario(name, variant, places, size, dims, height, terrain, heights_agl=(20
     text += "emitters:\n"
     for n in range(len(places)):
         text += EMITTER.format(n=n, frequency=(0.4 + step_ghz * n) * 1e9, antenna=ANTENNAS[n % len(ANTENNAS)],
-                               azimuth=22.5 * n, propagation=propagation)
+                               azimuth=22.5 * n % 360, propagation=propagation)
     return text
 
 

@@ -26,21 +26,23 @@ class ColumnPosts {
   /// @param at_crossings  false: regular posts
   __device__ ColumnPosts(const Station& station, const GroundPosts& ground, const FastInverse& path,
                          bool at_crossings)
-      : station_(station), ground_(ground), path_(path) {
+      : station_(station), ground_(ground), path_(path), around_(RasterChord{}) {
     if (!at_crossings || ground.is_smooth) regular_chords_ = ~0ull;
   }
 
   /// Calls visit(PathPost) for the posts from the first one beyond the emitter on.
   /// @tparam kOrdered  in the order of their ranges, which takes more time
+  /// @param limit_m    posts beyond it may be left out, not with kOrdered
   /// @return false if the visits are void: a chord was found whose posts are regular ones, and the next call
   /// knows it
   template <bool kOrdered, class Visit>
-  __device__ bool each(const Visit& visit) {
+  __device__ bool each(float limit_m, const Visit& visit) {
     const int regular = ground_.lastBefore(path_.distance_m) + 1;
     const bool is_smooth = ground_.is_smooth, with_beginnings = regular_chords_ != ~0ull;
     const Chords of_path = chords();
     for (int n = 0; n < of_path.count; ++n) {
       const double begin_m = n * of_path.length_m;
+      if (begin_m > static_cast<double>(limit_m)) break;
       TerrainChord chord;
       if (!is_smooth) prepare(station_, ground_, path_, n, chord);
       int first = n == 0 ? 1 : ground_.lastBefore(begin_m) + 1;
@@ -53,7 +55,7 @@ class ColumnPosts {
         const double* const others_m = n == 0 ? ground_.ranges_m + 1 : &begin_m;
         const int others = n == 0 ? others_end - 1 : 1;
         const Found found = kOrdered ? eachInOrder(chord, begin_m, of_path.length_m, others_m, others, visit)
-                                     : eachCrossing(chord, begin_m, of_path.length_m, visit);
+                                     : eachCrossing(chord, begin_m, of_path.length_m, limit_m, visit);
         if (found != Found::all) regular_chords_ |= bitOf(n);
         if (found == Found::void_post) return false;
         with_crossings = found == Found::all;
@@ -72,7 +74,7 @@ class ColumnPosts {
   }
 
   /// After each().
-  __device__ PostsAround around(float range_m) const {
+  __device__ PostsAround around(float range_m) {
     PostsAround found{-HUGE_VALF, HUGE_VALF};
     const auto add = [&](double at_m) {
       const float here_m = fminf(static_cast<float>(at_m), farthest_m());
@@ -180,7 +182,7 @@ class ColumnPosts {
 
   /// The crossings of a chord, column by column, then row by row.
   template <class Visit>
-  __device__ Found eachCrossing(const TerrainChord& chord, double begin_m, double chord_m,
+  __device__ Found eachCrossing(const TerrainChord& chord, double begin_m, double chord_m, float limit_m,
                                 const Visit& visit) const {
     if (chord.in_raster.corner_msl_m == nullptr) return Found::too_many;
     const ChordCrossings crossings(chord.in_raster);
@@ -190,13 +192,19 @@ class ColumnPosts {
     const auto from_m = static_cast<float>(begin_m), length_m = static_cast<float>(chord_m);
     const float farthest_m = this->farthest_m();
     const bool is_raised = ground_.is_raised;
+    const float limit_part = (limit_m - from_m) / length_m;
     float unknown = 0;
 #pragma unroll 1
     for (int run = 0; run < 4; ++run) {  // before and after the turn of columns and rows
       const bool of_columns = run < 2, is_first = run % 2 == 0;
       const LineCrossings lines = of_columns ? crossings.columns : crossings.rows;
       const Parabola<float> across = of_columns ? crossings.rows.coordinate : crossings.columns.coordinate;
-      const int first = is_first ? 0 : lines.before_turn, end = is_first ? lines.before_turn : lines.count;
+      const int first = is_first ? 0 : lines.before_turn;
+      const int within =
+          limit_part < 1
+              ? lines.countBefore(limit_part, static_cast<int>(lines.coordinate.at(limit_part))) + 1
+              : lines.count;
+      const int end = min(is_first ? lines.before_turn : lines.count, within);
       if (first >= end) continue;
       const int line_step = of_columns ? 1 : row_posts, cell_step = of_columns ? row_posts : 1;
       const int step = (lines.to_root > 0) == is_first ? 1 : -1;
@@ -299,6 +307,8 @@ class ColumnPosts {
   const Station& station_;
   const GroundPosts& ground_;
   const FastInverse& path_;
+  int around_chord_ = -1;
+  ChordCrossings around_;             ///< of around_chord_
   std::uint64_t regular_chords_ = 0;  ///< by bitOf(); all: the profile has regular posts only
 };
 

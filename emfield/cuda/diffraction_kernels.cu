@@ -29,7 +29,7 @@ __device__ __noinline__ float effectiveHeight_m(const Station& station, float he
 /// Bullington's nu over a smooth earth with posts at the same ranges, as propagation::bullingtonNu. A
 /// separate call.
 /// @param heights  of the antennas above it
-__device__ __noinline__ float smoothEarthNu(const DiffractionModel<float>& model, const ColumnPosts& posts,
+__device__ __noinline__ float smoothEarthNu(const DiffractionModel<float>& model, ColumnPosts& posts,
                                             float distance_m, const EffectiveHeights<float>& heights) {
   const float k = model.half_curvature, d = distance_m, tx_m = heights.tx_m, rx_m = heights.rx_m;
   // Largest slope from an antenna: at its horizon, that is at one of the posts on either side of it.
@@ -102,8 +102,14 @@ class Receivers {
     return for_any ? pass<kReceivers, true, true>(rx_m, most) : pass<kReceivers, true, false>(rx_m, most);
   }
   /// Finds the maxima of receivers, lowest first.
+  /// With increasing height of the receiver, the post of each maximum only moves toward the transmitter:
+  /// posts beyond those of the receivers before need not be visited again, while the measure is the same.
   template <int kReceivers>
   __device__ void find(const float* rx_m, Maxima* most) {
+    const bool is_below = slopeTo(rx_m[kReceivers - 1]) <= tx_slope_;
+    const bool is_above = slopeTo(rx_m[0]) > tx_slope_;
+    if (!(is_below || (is_above && was_above_))) limit_m_ = HUGE_VALF;
+    was_above_ = is_above;
     const bool in_earth = isInEarth(rx_m[0]) && slopeTo(rx_m[0]) < plain_tx_slope_;
     if (__any_sync(__activemask(), in_earth)) {
       pass<kReceivers, false, true>(rx_m, most);
@@ -130,6 +136,7 @@ class Receivers {
   template <int kReceivers, bool kSurvey, bool kEarth>
   __device__ __noinline__ bool pass(const float* rx_m, Maxima* most) {
     constexpr int kRoom = kReceivers > 0 ? kReceivers : 1;
+    constexpr bool kOrdered = kSurvey && kEarth;
     constexpr bool kBoth = kSurvey && kReceivers > 0;  // it is not known which are below the steepest ray
     const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
     const float d = distance_m_, base_msl_m = base_msl_m_, tx_m = tx_m_, half_curvature = half_curvature_;
@@ -159,6 +166,7 @@ class Receivers {
       before = to;
     };
     bool is_whole;
+    float edge_at_m = 0, plain_rx_at_m = 0, plain_at_m = 0;  // of the last receiver
     do {
       tx = clear = plain_tx = -HUGE_VALF;
       unknown = base_msl_m - base_msl_m + (ground_m_ - ground_m_);
@@ -166,37 +174,42 @@ class Receivers {
       before = {0, base_msl_m};
 #pragma unroll
       for (int j = 0; j < kReceivers; ++j) edge[j] = nearest[j] = plain_rx[j] = plain[j] = -HUGE_VALF;
-      is_whole = posts_.each < kSurvey &&
-                 kEarth > ([&](const PathPost& post) {
-                   const float range = post.range_m, beyond = d - range, product = range * beyond;
-                   float root;
-                   asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(product));
-                   const float above = post.height_msl_m - base_msl_m - tx_m;
-                   const float bulged = fmaf(half_curvature, product, above);
-                   if constexpr (kSurvey) {
-                     unknown += post.height_msl_m - post.height_msl_m;
-                     const float per_range = beyond * root;
-                     tx = fmaxf(tx, per_range * (bulged * root));
-                     clear = fmaxf(clear, per_range * fmaf(bulged, root, clearance));
-                     if constexpr (kEarth) {
-                       plain_tx = fmaxf(plain_tx, per_range * (above * root));
-                       addToTrend(post);
-                     }
-                   }
-                   const float per_beyond = root * root * range, bend = half_curvature * range;
+      is_whole = posts_.each<kOrdered>(kSurvey ? HUGE_VALF : limit_m_, [&](const PathPost& post) {
+        const float range = post.range_m, beyond = d - range, product = range * beyond;
+        float root;
+        asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(root) : "f"(product));
+        const float above = post.height_msl_m - base_msl_m - tx_m;
+        const float bulged = fmaf(half_curvature, product, above);
+        if constexpr (kSurvey) {
+          unknown += post.height_msl_m - post.height_msl_m;
+          const float per_range = beyond * root;
+          tx = fmaxf(tx, per_range * (bulged * root));
+          clear = fmaxf(clear, per_range * fmaf(bulged, root, clearance));
+          if constexpr (kEarth) {
+            plain_tx = fmaxf(plain_tx, per_range * (above * root));
+            addToTrend(post);
+          }
+        }
+        const float per_beyond = root * root * range, bend = half_curvature * range;
 #pragma unroll
-                   for (int j = 0; j < kReceivers; ++j) {
-                     const float above_line = fmaf(-slope[j], range, bulged);
-                     const float from_rx = above_line * (kBoth || is_below[j] ? per_beyond : root);
-                     edge[j] = fmaxf(edge[j], from_rx);
-                     if constexpr (kBoth) nearest[j] = fmaxf(nearest[j], above_line * root);
-                     if constexpr (kEarth) {  // read of those below the steepest plain ray, and so below the
-                                              // steepest one
-                       plain_rx[j] = fmaxf(plain_rx[j], from_rx - bend);
-                       plain[j] = fmaxf(plain[j], fmaf(-slope[j], range, above));
-                     }
-                   }
-                 });
+        for (int j = 0; j < kReceivers; ++j) {
+          const float above_line = fmaf(-slope[j], range, bulged);
+          const float from_rx = above_line * (kBoth || is_below[j] ? per_beyond : root);
+          if (!kSurvey && j == kReceivers - 1 && from_rx > edge[j]) edge_at_m = range;
+          edge[j] = fmaxf(edge[j], from_rx);
+          if constexpr (kBoth) nearest[j] = fmaxf(nearest[j], above_line * root);
+          if constexpr (kEarth) {  // read of those below the steepest plain ray, and so below the
+                                   // steepest one
+            const float plain_above = fmaf(-slope[j], range, above);
+            if (!kSurvey && j == kReceivers - 1) {
+              if (from_rx - bend > plain_rx[j]) plain_rx_at_m = range;
+              if (plain_above > plain[j]) plain_at_m = range;
+            }
+            plain_rx[j] = fmaxf(plain_rx[j], from_rx - bend);
+            plain[j] = fmaxf(plain[j], plain_above);
+          }
+        }
+      });
     } while (!is_whole);
     if constexpr (kSurvey) {
       tx_slope_ = tx;
@@ -209,6 +222,10 @@ class Receivers {
         trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(d)));
         if (task_.model.model.sea_by_height) sea_fraction_ = sea_m / d;
       }
+    }
+    if constexpr (!kSurvey) {
+      limit_m_ = edge_at_m;
+      if constexpr (kEarth) limit_m_ = fmaxf(limit_m_, fmaxf(plain_rx_at_m, plain_at_m));
     }
 #pragma unroll
     for (int j = 0; j < kReceivers; ++j) {
@@ -255,6 +272,8 @@ class Receivers {
   float base_msl_m_, distance_m_, ground_m_, tx_m_;
   float edge_scale_;  ///< from heights over sqrt(d1 d2) to nu
   float half_curvature_, sea_fraction_;
+  float limit_m_ = HUGE_VALF;          ///< see find()
+  bool was_above_ = false;             ///< the receivers before are above the steepest ray
   bool has_earth_ = false;             ///< the ground alone does not prove that the smooth earth has no loss
   float tx_slope_ = -HUGE_VALF;        ///< largest slope from the transmitter to an obstacle
   float clear_slope_ = -HUGE_VALF;     ///< of the lowest line of sight that all obstacles are clear of
