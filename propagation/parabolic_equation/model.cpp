@@ -9,6 +9,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
 #include "propagation/diffraction/model.h"
 #include "propagation/parabolic_equation/air/ducts.h"
 #include "propagation/parabolic_equation/air/path_air.h"
@@ -286,7 +287,10 @@ PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const 
       path.air = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), grid.range_step_m);
     }
     RadialMarch<double, 1> march(grid, {std::move(path)});
-    for (int i = 0; i < steps; ++i) march.advance();
+    for (int i = 0; i < steps; ++i) {
+      checkpoint();
+      march.advance();
+    }
     const double above_m = double(column.height_msl_m[0]) - march.ground_m(0);
     power += std::pow(10.0, march.factorDb(0, std::max(above_m, 0.0)) / 10) / double(surfaces.size());
     halvings = int(std::lround(std::log2(double(grid.intervals) / march.intervals())));

@@ -214,7 +214,7 @@ void expectWithinFactor5(unsigned first_seed, int count, double longest_s) {
 }
 
 TEST(WorkEstimate, IsWithinAFactorOf5OfDrawnScenarios) {
-  expectWithinFactor5(1, 12, 0.5);
+  expectWithinFactor5(1, 10, 0.2);
 }
 
 TEST(WorkEstimate, SLOW_IsWithinAFactorOf5OfManyDrawnScenarios) {
