@@ -22,11 +22,11 @@ class DevicePattern {
  public:
   explicit DevicePattern(const scenario::PatternView& pattern) : view_(pattern) {
     using scenario::PatternKind;
-    const auto azimuths = static_cast<std::size_t>(pattern.azimuth_count);
-    const auto elevations = static_cast<std::size_t>(pattern.elevation_count);
-    view_.azimuth_table = copied(pattern.azimuth_table, azimuths);
-    view_.elevation_table = copied(pattern.elevation_table, elevations);
-    view_.grid_table = copied(pattern.grid_table, azimuths * elevations);
+    view_.azimuth_table = copied(pattern.azimuth_table, static_cast<std::size_t>(pattern.azimuth_count));
+    view_.elevation_table =
+        copied(pattern.elevation_table, static_cast<std::size_t>(pattern.elevation_count));
+    view_.grid_table = copied(pattern.grid_table, static_cast<std::size_t>(pattern.columns) *
+                                                      static_cast<std::size_t>(pattern.rows));
   }
   const scenario::PatternView& view() const { return view_; }
 

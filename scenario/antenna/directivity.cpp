@@ -103,26 +103,52 @@ double planarIntegral_sr(const PatternView& pattern, double floor) {
 double gridIntegral_sr(const PatternView& pattern) {
   using antenna_detail::atCell;
   using antenna_detail::cellInTable;
-  const int columns = std::clamp(pattern.azimuth_count - 1, 720, 3600);
-  const int rows = std::clamp(pattern.elevation_count - 1, 360, 1800);
+  const int columns = std::clamp(pattern.columns - 1, 720, 3600);
+  const int rows = std::clamp(pattern.rows - 1, 360, 1800);
   double integral = 0;
   for (int row = 0; row < rows; ++row) {
     const double elevation = midpoint(row, rows, kPi / 2);
-    const auto cell =
-        cellInTable(static_cast<float>(elevation), static_cast<float>(kPi / 2), pattern.elevation_count);
-    const float* const below =
-        pattern.grid_table + static_cast<std::size_t>(cell.index) * pattern.azimuth_count;
-    const float* const above = below + pattern.azimuth_count;
+    const auto cell = cellInTable(static_cast<float>(elevation), static_cast<float>(kPi / 2), pattern.rows);
+    const float* const below = pattern.grid_table + static_cast<std::size_t>(cell.index) * pattern.columns;
+    const float* const above = below + pattern.columns;
     double sum = 0;
     for (int column = 0; column < columns; ++column) {
       const auto azimuth = cellInTable(static_cast<float>(midpoint(column, columns, kPi)),
-                                       static_cast<float>(kPi), pattern.azimuth_count);
+                                       static_cast<float>(kPi), pattern.columns);
       const double amplitude = lerp(atCell(below, azimuth), atCell(above, azimuth), cell.fraction);
       sum += amplitude * amplitude;
     }
     integral += sum * std::cos(elevation);
   }
   return integral * 2 * kPi * kPi / (double(rows) * columns);
+}
+
+/// Angles (rad) at which a table of positions passes whole numbers.
+std::vector<double> nodesOf(const float* positions, int count, double half_span) {
+  std::vector<double> nodes;
+  for (int i = 0; i < count; ++i) {
+    if (positions[i] == std::floor(positions[i])) nodes.push_back(half_span * (2.0 * i / (count - 1) - 1));
+  }
+  return nodes;
+}
+
+/// Between four nodes, the mean of their powers.
+double refinedIntegral_sr(const PatternView& pattern) {
+  const std::vector<double> azimuths = nodesOf(pattern.azimuth_table, pattern.azimuth_count, kPi);
+  const std::vector<double> elevations = nodesOf(pattern.elevation_table, pattern.elevation_count, kPi / 2);
+  const auto rowIntegral = [&](std::size_t row) {
+    const float* const amplitudes = pattern.grid_table + row * static_cast<std::size_t>(pattern.columns);
+    const auto power = [&](std::size_t i) { return double(amplitudes[i]) * double(amplitudes[i]); };
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < azimuths.size(); ++i)
+      sum += (power(i) + power(i + 1)) / 2 * (azimuths[i + 1] - azimuths[i]);
+    return sum;
+  };
+  double integral = 0;
+  for (std::size_t row = 0; row + 1 < elevations.size(); ++row)
+    integral += (rowIntegral(row) + rowIntegral(row + 1)) / 2 *
+                (std::sin(elevations[row + 1]) - std::sin(elevations[row]));
+  return integral;
 }
 
 }  // namespace
@@ -154,6 +180,8 @@ double patternIntegral_sr(const PatternView& pattern) {
       return planarIntegral_sr(pattern, floor);
     case PatternKind::grid:
       return gridIntegral_sr(pattern);
+    case PatternKind::refined_grid:
+      return refinedIntegral_sr(pattern);
   }
   return 4 * kPi;
 }

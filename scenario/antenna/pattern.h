@@ -84,13 +84,28 @@ EMSCAPE_HD inline float phasedArrayAmplitude(const PatternView& pattern, const V
   return bounded<kSigned>(direction.x > 0.0f ? array * element : 0.0f, pattern.side_lobe_amplitude);
 }
 
+/// The cell of a position counted in entries of a table. NaN gives any interval of the table.
+EMSCAPE_HD inline TableCell cellAt(float position, int count) {
+  const int below = static_cast<int>(fast_math_detail::roundToInt(position - 0.5f).as_int);
+  const int above_low = below < 0 ? 0 : below;
+  const int bounded = above_low > count - 2 ? count - 2 : above_low;
+  return {bounded, position - static_cast<float>(bounded)};
+}
+
+template <bool kRefined>
 EMSCAPE_HD inline float gridAmplitude(const PatternView& pattern, const Vec3f& direction) {
   const PatternAngles angles = anglesOf(direction);
-  const TableCell azimuth = cellInTable(angles.azimuth_rad, float(kPi), pattern.azimuth_count);
-  const TableCell elevation = cellInTable(angles.elevation_rad, float(kPi / 2), pattern.elevation_count);
+  TableCell azimuth =
+      cellInTable(angles.azimuth_rad, float(kPi), kRefined ? pattern.azimuth_count : pattern.columns);
+  TableCell elevation =
+      cellInTable(angles.elevation_rad, float(kPi / 2), kRefined ? pattern.elevation_count : pattern.rows);
+  if constexpr (kRefined) {
+    azimuth = cellAt(atCell(pattern.azimuth_table, azimuth), pattern.columns);
+    elevation = cellAt(atCell(pattern.elevation_table, elevation), pattern.rows);
+  }
   // One 32-bit index instead of one offset pointer per lane, so that the look-ups become gathers.
-  const int corner = elevation.index * pattern.azimuth_count + azimuth.index;
-  const int above = corner + pattern.azimuth_count;
+  const int corner = elevation.index * pattern.columns + azimuth.index;
+  const int above = corner + pattern.columns;
   const float* table = pattern.grid_table;
   const float value =
       std::fabs(lerp(lerp(table[corner], table[corner + 1], azimuth.fraction),
@@ -119,7 +134,9 @@ EMSCAPE_HD inline float amplitudeOf(const PatternView& pattern, const Vec3f& dir
   } else if constexpr (kind == PatternKind::phased_array) {
     return antenna_detail::phasedArrayAmplitude<kSigned>(pattern, direction, steer_u, steer_v);
   } else if constexpr (kind == PatternKind::grid) {
-    return antenna_detail::gridAmplitude(pattern, direction);
+    return antenna_detail::gridAmplitude<false>(pattern, direction);
+  } else if constexpr (kind == PatternKind::refined_grid) {
+    return antenna_detail::gridAmplitude<true>(pattern, direction);
   } else {
     return 1.0f;
   }
@@ -141,6 +158,8 @@ EMSCAPE_HD inline auto onPattern(const PatternView& pattern, const Function& f) 
       return f(std::integral_constant<PatternKind, PatternKind::phased_array>{});
     case PatternKind::grid:
       return f(std::integral_constant<PatternKind, PatternKind::grid>{});
+    case PatternKind::refined_grid:
+      return f(std::integral_constant<PatternKind, PatternKind::refined_grid>{});
     case PatternKind::isotropic:
       break;
   }

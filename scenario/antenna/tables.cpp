@@ -139,8 +139,8 @@ PatternView GridAntenna::view() const {
   view.kind = PatternKind::grid;
   view.side_lobe_amplitude = side_lobe_amplitude_;
   view.grid_table = amplitudes_.data();
-  view.azimuth_count = azimuth_count_;
-  view.elevation_count = elevation_count_;
+  view.columns = azimuth_count_;
+  view.rows = elevation_count_;
   return view;
 }
 

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 #include "scenario/antenna/pattern.h"
+#include "scenario/antenna/refined_grid.h"
 #include "scenario/antenna/tables.h"
+#include "scenario/scan/power_row.h"
 
 namespace emscape::scenario {
 namespace {
@@ -29,85 +32,6 @@ struct Sampled {
   }
 };
 
-/// Power of a pattern at one elevation by azimuth relative to the beam, over the full circle.
-class PowerRow {
- public:
-  /// @param elevation_rad  of the row
-  /// @param tilt_rad       of the beam, upwards
-  PowerRow(const PatternView& pattern, int azimuths, double elevation_rad, double tilt_rad)
-      : count_(azimuths), power_(static_cast<std::size_t>(azimuths)) {
-    const double level = std::cos(elevation_rad), up = std::sin(elevation_rad);
-    const double cos_tilt = std::cos(tilt_rad), sin_tilt = std::sin(tilt_rad);
-    for (int i = 0; i < azimuths; ++i) {
-      const double azimuth_rad = 2 * kPi * i / azimuths;
-      const double ahead = level * std::cos(azimuth_rad), right = level * std::sin(azimuth_rad);
-      const Vec3d direction{ahead * cos_tilt + up * sin_tilt, right, up * cos_tilt - ahead * sin_tilt};
-      const float amplitude = patternAmplitude(pattern, vecCast<float>(direction), 0, 0);
-      power_[static_cast<std::size_t>(i)] = static_cast<double>(amplitude) * static_cast<double>(amplitude);
-    }
-    sums_.reserve(power_.size() + 1);
-    sums_.push_back(0);
-    for (int i = 0; i < azimuths; ++i) sums_.push_back(sums_.back() + (at(i) + at(i + 1)) / 2);
-  }
-
-  double largest() const { return *std::max_element(power_.begin(), power_.end()); }
-  /// Between two azimuths (deg), less than a turn apart.
-  double largest(double begin_deg, double end_deg) {
-    const double first_turn = std::floor(begin_deg / 360) * 360;
-    const double begin = (begin_deg - first_turn) * count_ / 360, end = (end_deg - first_turn) * count_ / 360;
-    const double at_ends = std::max(between(begin), between(end));
-    const int first = static_cast<int>(std::ceil(begin)), last = static_cast<int>(std::floor(end));
-    return last < first ? at_ends : std::max(at_ends, largestOf(first, last));
-  }
-  /// The mean between two azimuths (deg).
-  double mean(double begin_deg, double end_deg) const {
-    const double first_turn = std::floor(begin_deg / 360) * 360;
-    const double begin = (begin_deg - first_turn) * count_ / 360, end = (end_deg - first_turn) * count_ / 360;
-    if (!(end > begin)) return between(begin);
-    return (integralTo(end) - integralTo(begin)) / (end - begin);
-  }
-
- private:
-  double at(int i) const { return power_[index(i)]; }
-  double between(double x) const {
-    const double below = std::floor(x);
-    const int i = static_cast<int>(below);
-    return at(i) + (x - below) * (at(i + 1) - at(i));
-  }
-  /// Integral of the interpolated power from azimuth 0.
-  double integralTo(double x) const {
-    const double turns = std::floor(x / count_);
-    const double in_turn = x - turns * count_;
-    const int i = std::min(static_cast<int>(in_turn), count_ - 1);
-    const double part = in_turn - i;
-    return turns * sums_.back() + sums_[static_cast<std::size_t>(i)] +
-           part * (at(i) + part / 2 * (at(i + 1) - at(i)));
-  }
-
-  /// Largest of the entries first..last, from two overlapping runs whose length is a power of two.
-  double largestOf(int first, int last) {
-    std::size_t level = 0;
-    while ((2 << level) <= last - first + 1) ++level;
-    if (runs_.empty()) runs_.push_back(power_);
-    while (runs_.size() <= level) {
-      const std::vector<double>& half = runs_.back();
-      const int length = 1 << (runs_.size() - 1);
-      std::vector<double> whole(half.size());
-      for (int i = 0; i < count_; ++i) whole[index(i)] = std::max(half[index(i)], half[index(i + length)]);
-      runs_.push_back(std::move(whole));
-    }
-    return std::max(runs_[level][index(first)], runs_[level][index(last + 1 - (1 << level))]);
-  }
-  /// @param i  0..2 count_: of two turns
-  std::size_t index(int i) const {
-    return static_cast<std::size_t>(i < count_ ? i : i < 2 * count_ ? i - count_ : i - 2 * count_);
-  }
-
-  int count_;
-  std::vector<double> power_, sums_;       ///< sums_[i]: the integral from azimuth 0 to entry i
-  std::vector<std::vector<double>> runs_;  ///< runs_[n][i]: the largest of the 2^n entries from i on
-};
-
 /// The different tilts of a sweep's arcs.
 struct Tilts {
   std::vector<double> tilts_deg;
@@ -123,7 +47,7 @@ struct Tilts {
 };
 
 /// The rows of one elevation, one for each tilt.
-std::vector<PowerRow> rowsOf(const PatternView& pattern, const Tilts& tilts, int azimuths,
+std::vector<PowerRow> rowsOf(const PatternView& pattern, const Tilts& tilts, const RowAzimuths& azimuths,
                              double elevation_rad) {
   std::vector<PowerRow> rows;
   rows.reserve(tilts.tilts_deg.size());
@@ -179,53 +103,154 @@ double powerOf(const PatternView& view, const std::vector<Steering>& dwells, con
   return power;
 }
 
-double angleOf(int index, int intervals, double span_deg) {
-  return span_deg * (index - intervals / 2) / intervals;
+/// A grid's nodes along one axis.
+struct Axis {
+  std::vector<double> angles_deg;
+  std::optional<RefinedAxis> refined;  ///< none: evenly spaced
+
+  int count() const { return static_cast<int>(angles_deg.size()); }
+};
+
+Axis evenAxis(double span_deg, int intervals) {
+  Axis axis;
+  for (int i = 0; i <= intervals; ++i) axis.angles_deg.push_back(span_deg * (i - intervals / 2) / intervals);
+  return axis;
+}
+
+Axis refinedAxis(int half_span_deg, double coarse_step_deg, const RefinedAxis::Zones& zones) {
+  Axis axis;
+  axis.refined.emplace(half_span_deg, coarse_step_deg, zones);
+  for (int i = 0; i < axis.refined->count(); ++i) axis.angles_deg.push_back(axis.refined->angle_deg(i));
+  return axis;
+}
+
+/// Zones around the directions from which the beam begins to move, or at which it stays.
+struct Middles {
+  std::vector<double> azimuths_deg, elevations_deg;
+
+  explicit Middles(const ScanSweep& sweep) {
+    for (const SweptArc& arc : sweep.arcs) {
+      azimuths_deg.push_back(arc.first_deg);
+      azimuths_deg.push_back(arc.first_deg + arc.width_deg);
+      elevations_deg.push_back(arc.elevation_deg);
+    }
+    for (const SweptDwell& dwell : sweep.dwells) {
+      azimuths_deg.push_back(dwell.azimuth_deg);
+      elevations_deg.push_back(dwell.elevation_deg);
+    }
+  }
+};
+
+/// Steps per beamwidth below which a table is refined.
+constexpr double kCoarse = 8;
+
+struct SweptAxes {
+  Axis azimuths, elevations;
+};
+
+/// The axes of a grid. Where the largest number of even steps is coarse for the beam, they are refined around
+/// its directions, as far and as finely as a number of entries permits.
+SweptAxes sweptAxes(const Antenna& antenna, const ScanSweep& sweep) {
+  constexpr double kLeastStep_deg = 360.0 / kMaxSweptAzimuths, kMaxEntries = 9e6;
+  struct Fineness {
+    double reach, steps;  // both in beamwidths
+  };
+  const double width_deg = antenna.beamwidth_az_deg, height_deg = antenna.beamwidth_el_deg;
+  if (std::min(width_deg, height_deg) >= kCoarse * kLeastStep_deg) {
+    return {evenAxis(360, intervalsFor(360, width_deg, 16, kMaxSweptAzimuths)),
+            evenAxis(180, intervalsFor(180, height_deg, 16, kMaxSweptAzimuths / 2))};
+  }
+  const Middles middles(sweep);
+  const auto axisOf = [&](int half_span_deg, double beam_deg, const std::vector<double>& middles_deg,
+                          const Fineness& fineness) {
+    const double step_deg = beam_deg / fineness.steps;
+    return refinedAxis(half_span_deg, std::max(step_deg, kLeastStep_deg),
+                       {middles_deg, fineness.reach * beam_deg, step_deg});
+  };
+  SweptAxes axes;
+  for (const Fineness& fineness : {Fineness{12, 20}, {6, 16}, {3, 16}, {3, 8}, {2, 6}}) {
+    axes = {axisOf(180, width_deg, middles.azimuths_deg, fineness),
+            axisOf(90, height_deg, middles.elevations_deg, fineness)};
+    if (double(axes.azimuths.count()) * axes.elevations.count() <= kMaxEntries) return axes;
+  }
+  const double affordable_deg = 180 / std::sqrt(kMaxEntries / 2);
+  const auto evenly = [&](int half_span_deg, double beam_deg) {
+    const double step_deg = std::max(affordable_deg, beam_deg / 16);
+    return refinedAxis(half_span_deg, step_deg, {{}, 0, step_deg});
+  };
+  return {evenly(180, width_deg), evenly(90, height_deg)};
+}
+
+/// The azimuths of rows for the columns of a grid.
+RowAzimuths rowAzimuths(const Axis& columns, double beamwidth_deg) {
+  if (!columns.refined) return RowAzimuths(columns.count() - 1);
+  const double step_deg = std::min(1.0, beamwidth_deg / 40);  // linear in power, not in amplitude
+  return RowAzimuths(RefinedAxis(180, std::max(step_deg, 360.0 / kMaxSweptAzimuths),
+                                 {{0}, std::min(180.0, 12 * beamwidth_deg), step_deg}));
 }
 
 /// Whole turns, each with one tilt: the same at every azimuth.
 AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
+  constexpr int kMaxElevations = 7200, kMaxAzimuths = 3600;
   const Sampled sampled(antenna, pattern);
-  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 8, 3600);
-  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 32, 7200);
+  const double least_step_deg = 180.0 / kMaxElevations;
+  const bool is_narrow =
+      std::min(antenna.beamwidth_az_deg, antenna.beamwidth_el_deg) < kCoarse * least_step_deg;
+  const double step_deg = antenna.beamwidth_el_deg / 32;
+  const Axis elevations =
+      is_narrow ? refinedAxis(90, std::max(step_deg, least_step_deg),
+                              {Middles(sweep).elevations_deg, 12 * antenna.beamwidth_el_deg, step_deg})
+                : evenAxis(180, intervalsFor(180, antenna.beamwidth_el_deg, 32, kMaxElevations));
+  const RowAzimuths azimuths =
+      is_narrow ? rowAzimuths(elevations, antenna.beamwidth_az_deg)
+                : RowAzimuths(intervalsFor(360, antenna.beamwidth_az_deg, 8, kMaxAzimuths));
   const Tilts tilts(sweep);
-  std::vector<double> amplitudes(static_cast<std::size_t>(elevations) + 1);
-  parallelFor(elevations + 1, 16, [&](int begin, int end) {
+  std::vector<double> amplitudes(static_cast<std::size_t>(elevations.count()));
+  parallelFor(elevations.count(), 16, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
       std::vector<PowerRow> rows =
-          rowsOf(sampled.view, tilts, azimuths, degToRad(angleOf(e, elevations, 180)));
+          rowsOf(sampled.view, tilts, azimuths, degToRad(elevations.angles_deg[static_cast<std::size_t>(e)]));
       amplitudes[static_cast<std::size_t>(e)] = std::sqrt(powerOf(rows, tilts, sweep, 0, pattern));
     }
   });
-  const auto shape = [amplitudes, elevations](double angle_rad) {
-    const double at = std::clamp((angle_rad / kPi + 0.5) * elevations, 0.0, double(elevations));
-    const int below = std::min(static_cast<int>(at), elevations - 1);
+  const std::vector<float> positions = is_narrow ? elevations.refined->positions() : std::vector<float>();
+  const int last = elevations.count() - 1;
+  const auto shape = [amplitudes, positions, last](double angle_rad) {
+    double at = std::clamp((angle_rad / kPi + 0.5) * last, 0.0, double(last));
+    if (!positions.empty()) {
+      const auto unit = std::lround((angle_rad / kPi + 0.5) * double(positions.size() - 1));
+      at = double(positions[static_cast<std::size_t>(std::clamp<long>(unit, 0, long(positions.size()) - 1))]);
+    }
+    const int below = std::min(static_cast<int>(at), last - 1);
     return amplitudes[static_cast<std::size_t>(below)] +
            (at - below) * (amplitudes[static_cast<std::size_t>(below) + 1] -
                            amplitudes[static_cast<std::size_t>(below)]);
   };
   const auto one = [](double) { return 1.0; };
-  return describedAntenna(
-      std::make_shared<SeparableAntenna>(tabulate(one, kPi, kPi), tabulate(shape, kPi / 2, kPi / elevations),
-                                         static_cast<double>(sampled.floor_amplitude)),
-      antenna.gain_dbi, 360, antenna.beamwidth_el_deg, "interval");
+  const double table_step_deg = is_narrow ? 1.0 / RefinedAxis::kUnitsPerDegree : 180.0 / last;
+  return describedAntenna(std::make_shared<SeparableAntenna>(
+                              tabulate(one, kPi, kPi), tabulate(shape, kPi / 2, degToRad(table_step_deg)),
+                              static_cast<double>(sampled.floor_amplitude)),
+                          antenna.gain_dbi, 360, antenna.beamwidth_el_deg, "interval");
 }
 
 AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
   const Sampled sampled(antenna, pattern);
-  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 16, kMaxSweptAzimuths);
-  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 16, kMaxSweptAzimuths / 2);
+  const auto [columns, elevations] = sweptAxes(antenna, sweep);
+  const RowAzimuths azimuths = rowAzimuths(columns, antenna.beamwidth_az_deg);
   const Tilts tilts(sweep);
   const std::vector<Steering> dwells = steeringsOf(sweep);
-  std::vector<float> amplitudes((static_cast<std::size_t>(azimuths) + 1) *
-                                (static_cast<std::size_t>(elevations) + 1));
-  parallelFor(elevations + 1, 8, [&](int begin, int end) {
+  const int count = columns.count();
+  std::vector<float> amplitudes(static_cast<std::size_t>(count) *
+                                static_cast<std::size_t>(elevations.count()));
+  parallelFor(elevations.count(), 8, [&, &columns = columns, &elevations = elevations](int begin, int end) {
     for (int e = begin; e < end; ++e) {
-      const double elevation_rad = degToRad(angleOf(e, elevations, 180));
+      const double elevation_rad = degToRad(elevations.angles_deg[static_cast<std::size_t>(e)]);
       std::vector<PowerRow> rows = rowsOf(sampled.view, tilts, azimuths, elevation_rad);
-      float* const row = amplitudes.data() + static_cast<std::size_t>(e) * (azimuths + 1);
-      for (int a = 0; a <= azimuths; ++a) {
-        const double azimuth_deg = angleOf(a, azimuths, 360), azimuth_rad = degToRad(azimuth_deg);
+      float* const row = amplitudes.data() + static_cast<std::size_t>(e) * static_cast<std::size_t>(count);
+      for (int a = 0; a < count; ++a) {
+        const double azimuth_deg = columns.angles_deg[static_cast<std::size_t>(a)],
+                     azimuth_rad = degToRad(azimuth_deg);
         const Vec3d direction{std::cos(elevation_rad) * std::cos(azimuth_rad),
                               std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)};
         const double power = dwells.empty()
@@ -235,20 +260,42 @@ AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPatt
       }
     }
   });
-  return describedAntenna(std::make_shared<GridAntenna>(std::move(amplitudes), azimuths + 1, elevations + 1,
-                                                        sampled.floor_amplitude),
-                          antenna.gain_dbi, antenna.beamwidth_az_deg, antenna.beamwidth_el_deg, "interval");
+  std::shared_ptr<Antenna> swept;
+  if (columns.refined) {
+    swept = std::make_shared<RefinedGridAntenna>(*columns.refined, *elevations.refined, std::move(amplitudes),
+                                                 sampled.floor_amplitude);
+  } else {
+    swept = std::make_shared<GridAntenna>(std::move(amplitudes), count, elevations.count(),
+                                          sampled.floor_amplitude);
+  }
+  return describedAntenna(swept, antenna.gain_dbi, antenna.beamwidth_az_deg, antenna.beamwidth_el_deg,
+                          "interval");
+}
+
+/// True if an interval's pattern is the same at every azimuth. A mean over more than a turn but not over
+/// whole turns depends on the azimuth.
+bool isSameAllRound(const ScanSweep& sweep, SweptPattern pattern) {
+  return sweep.dwells.empty() && std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [&](const SweptArc& arc) {
+           return pattern == SweptPattern::largest ? arc.isRound() : arc.isWholeTurns();
+         });
 }
 
 }  // namespace
 
 AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
-  // A mean over more than a turn but not over whole turns depends on the azimuth.
-  const bool is_same_all_round =
-      sweep.dwells.empty() && std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [&](const SweptArc& arc) {
-        return pattern == SweptPattern::largest ? arc.isRound() : arc.isWholeTurns();
-      });
-  return is_same_all_round ? roundAntenna(antenna, sweep, pattern) : gridAntenna(antenna, sweep, pattern);
+  return isSameAllRound(sweep, pattern) ? roundAntenna(antenna, sweep, pattern)
+                                        : gridAntenna(antenna, sweep, pattern);
+}
+
+double lowOnAxis_db(const Antenna& antenna, const ScanSweep& sweep) {
+  if (isSameAllRound(sweep, SweptPattern::mean)) return 0;
+  const SweptAxes axes = sweptAxes(antenna, sweep);
+  const auto low_db = [](const Axis& axis, double beam_deg) {
+    const double step_deg = axis.refined ? axis.refined->fineStep_deg() : beam_deg / kCoarse;
+    return 12 * std::pow(step_deg / 2 / beam_deg, 2);
+  };
+  return std::max(low_db(axes.azimuths, antenna.beamwidth_az_deg),
+                  low_db(axes.elevations, antenna.beamwidth_el_deg));
 }
 
 }  // namespace emscape::scenario

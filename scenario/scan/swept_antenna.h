@@ -6,8 +6,8 @@
 
 namespace emscape::scenario {
 
-/// Largest number of intervals of an interval's table in azimuth, half of it in elevation: narrow beams are
-/// sampled no more finely.
+/// Largest number of even intervals of an interval's table in azimuth, half of it in elevation: for narrower
+/// beams, tables are refined around the beam's directions.
 constexpr int kMaxSweptAzimuths = 2880;
 
 enum class SweptPattern {
@@ -19,9 +19,14 @@ enum class SweptPattern {
 /// forward is azimuth 0 of the sweep. It has the antenna's gain: amplitudes are relative to the beam's
 /// maximum, and a mean includes the active part of the interval.
 /// @param sweep  not empty; azimuths of arcs relative to the frame
-/// @accuracy 0.1 dB down to 20 dB below the maximum, without nulls to 30 dB; next to nulls 0.5 dB; for
-/// beamwidths below 1.5 degrees 0.2 dB. Entries of tables are a 16th of a beamwidth apart, but at least 1/8
-/// degree; entries for whole turns, which depend only on elevation, a 32nd or 1/40 degree
+/// @accuracy 0.1 dB down to 20 dB below the maximum, without nulls to 30 dB; next to nulls 0.5 dB. Entries of
+/// tables are a 16th of a beamwidth apart (up to an 8th for beams of 1 to 2 degrees; for whole turns, which
+/// depend only on elevation, a 32nd), for beams narrower than 1 degree a 20th to 12 beamwidths from the
+/// beam's directions, less where a scan has very many; beyond them 1/8 degree
 AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern);
+
+/// How low (dB) a Gaussian beam's value may be on its axis, between two entries of its table: 0.05 dB and
+/// less, more where a scan has so many directions that its table cannot be fine around all of them.
+double lowOnAxis_db(const Antenna& antenna, const ScanSweep& sweep);
 
 }  // namespace emscape::scenario

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "emscape/base/error.h"
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
 #include "scenario/terrain/gdal_messages.h"
 #include "scenario/terrain/transformation.h"

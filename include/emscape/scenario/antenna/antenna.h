@@ -26,6 +26,7 @@ enum class PatternKind {
                  ///< v0) * element pattern, at least side_lobe_amplitude, and equal to it behind the array; u
                  ///< = right, v = up (direction cosines)
   grid,          ///< bilinear in azimuth and elevation, at least side_lobe_amplitude
+  refined_grid,  ///< the same with rows and columns at uneven angles
 };
 
 /// A pattern as plain data, for host and device loops. Amplitudes are relative voltages: 1 at the maximum;
@@ -41,13 +42,15 @@ struct PatternView {
   /// Where |right| > lobe_tangent * forward, the amplitude is side_lobe_amplitude at every elevation, so that
   /// loops may skip these directions; 0: no such directions. See depthInLobe().
   float lobe_tangent = 0;
-  /// separable, phased_array, grid. Grid: row-major, elevation rows, azimuth fastest, azimuth_count x
-  /// elevation_count.
+  /// separable, phased_array: amplitudes. refined_grid: positions in the grid, counted in columns and rows.
   const float* azimuth_table = nullptr;
   const float* elevation_table = nullptr;
-  const float* grid_table = nullptr;
   int azimuth_count = 0;
   int elevation_count = 0;
+  /// grid, refined_grid: row-major, elevation rows, azimuth fastest.
+  const float* grid_table = nullptr;
+  int columns = 0;
+  int rows = 0;
   /// phased_array: the element's pattern is cos(angle off boresight)^element_exponent in amplitude.
   float element_exponent = 0;
 };
