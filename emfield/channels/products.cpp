@@ -9,6 +9,7 @@
 #include "emfield/radar/receiver.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "emscape/scenario/model/exposure_limits.h"
 #include "emscape/volume/dense_volume.h"
 #include "propagation/mechanism.h"
 #include "scenario/file/quantity_needs.h"
@@ -107,6 +108,7 @@ const char* scaleOf(Quantity quantity) {
   switch (quantity) {
     case Quantity::detection_probability:
     case Quantity::occupancy:
+    case Quantity::exposure_ratio:
       return volume::kProbabilityScale;
     case Quantity::jammer_to_signal_db:
       return volume::kRatioBelowScale;
@@ -131,6 +133,7 @@ bool emittersOnlyRaise(Quantity quantity) {
     case Quantity::burn_through_margin_db:
     case Quantity::emitter_count:
     case Quantity::occupancy:
+    case Quantity::exposure_ratio:
       return true;
     case Quantity::sinr_db:  // others interfere
     case Quantity::jammer_to_signal_db:
@@ -152,6 +155,10 @@ std::string legendNoteOf(Quantity quantity, const scenario::Scenario& scenario) 
       return "signal: " + scenario.emitters[scenario.output.wanted_emitter].name;
     case Quantity::occupancy:
       return fmt::format("above {:g} dBW/m2", scenario.output.count_threshold_dbwm2);
+    case Quantity::exposure_ratio:
+      return scenario.output.exposure_group == scenario::ExposureGroup::occupational
+                 ? "1: ICNIRP 2020, occupational"
+                 : "1: ICNIRP 2020, general public";
     case Quantity::detection_age_s:
       return fmt::format("Pd at least {:g}; not detected: empty", scenario.output.detection_threshold);
     default:
@@ -249,6 +256,14 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
       break;
     case Quantity::mean_power_density_dbwm2:
       weigh([](const Emitter& emitter) { return emitter.dutyCycle(); });
+      break;
+    case Quantity::exposure_ratio:
+      plan.product.form = ProductForm::itself;
+      plan.product.floor = 0;
+      weigh([&](const Emitter& emitter) {
+        return emitter.dutyCycle() /
+               *scenario::referenceLevel_wm2(scenario.output.exposure_group, emitter.frequency_hz);
+      });
       break;
   }
   // The combine stage computes the power density for the beam's direction, but not for other looks, and no

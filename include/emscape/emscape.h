@@ -57,6 +57,7 @@
 #include "emscape/scenario/model/clutter.h"
 #include "emscape/scenario/model/edit.h"
 #include "emscape/scenario/model/emitter.h"
+#include "emscape/scenario/model/exposure_limits.h"
 #include "emscape/scenario/model/interval.h"
 #include "emscape/scenario/model/platform.h"
 #include "emscape/scenario/model/poses.h"

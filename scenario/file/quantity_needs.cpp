@@ -37,6 +37,16 @@ std::string unmetOfSinr(const Scenario& scenario, const OutputSpec& output) {
       receiver.bandwidth_hz);
 }
 
+std::string unmetOfExposure(const Scenario& scenario, const OutputSpec& output) {
+  for (const Emitter& emitter : scenario.emitters) {
+    if (referenceLevel_wm2(output.exposure_group, emitter.frequency_hz)) continue;
+    return fmt::format(
+        "exposure_ratio has reference levels from 100 kHz to 300 GHz, not at the {} Hz of the emitter '{}'",
+        emitter.frequency_hz, emitter.name);
+  }
+  return "";
+}
+
 std::string unmetOfAge(const Scenario& scenario, const OutputSpec& output) {
   if (!hasInterval(info(Quantity::detection_age_s), output.interval.kind))
     return "detection_age_s needs an 'interval' of kind cumulative in the output";
@@ -65,6 +75,7 @@ std::string unmetInterval(Quantity quantity, IntervalKind interval) {
 
 std::string unmetNeed(Quantity quantity, const Scenario& scenario, const OutputSpec& output) {
   if (quantity == Quantity::detection_age_s) return unmetOfAge(scenario, output);
+  if (quantity == Quantity::exposure_ratio) return unmetOfExposure(scenario, output);
   if (quantity == Quantity::occupancy && !hasInterval(info(quantity), output.interval.kind))
     return "occupancy needs an 'interval' of kind mean in the output";
   if (info(quantity).kind != QuantityKind::of_receiver) return "";

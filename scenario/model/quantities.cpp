@@ -40,6 +40,9 @@ const std::vector<QuantityInfo>& quantityTable() {
        "share of the interval in which an emitter's power density is above the count threshold"},
       {Quantity::dominant_model, "dominant_model", "", QuantityKind::of_emitters,
        "model, or part of one, that determines the loss of the emitter with the largest power density", true},
+      {Quantity::exposure_ratio, "exposure_ratio", "", QuantityKind::of_emitters,
+       "sum over the emitters of mean power density over ICNIRP's reference level for the exposure of "
+       "people"},
   };
   return kTable;
 }
@@ -61,6 +64,7 @@ bool hasInterval(const QuantityInfo& quantity, IntervalKind interval) {
       return quantity.quantity == Quantity::power_density_dbwm2 ||
              quantity.quantity == Quantity::mean_power_density_dbwm2 ||
              quantity.quantity == Quantity::field_strength_dbuvm ||
+             quantity.quantity == Quantity::exposure_ratio ||
              quantity.quantity == Quantity::received_power_dbm;
     case IntervalKind::cumulative:
       break;

@@ -75,6 +75,8 @@ const ObjectSpec& outputSpec() {
                    "name of the emitter whose signal sinr_db is of; all others are interference"),
           byDefault("detection_threshold", number().above(0).to(1), OutputSpec{}.detection_threshold,
                     "detection_age_s: probability from which a look counts as a detection"),
+          byDefault("exposure_group", choiceOf<ExposureGroup>(), toString(OutputSpec{}.exposure_group),
+                    "exposure_ratio: the people whose reference levels hold"),
       }};
   return spec;
 }

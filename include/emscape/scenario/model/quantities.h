@@ -25,6 +25,7 @@ enum class Quantity {
   detection_age_s,
   occupancy,
   dominant_model,
+  exposure_ratio,
 };
 
 /// Signals on which a quantity depends.

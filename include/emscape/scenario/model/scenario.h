@@ -14,6 +14,7 @@
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/edit.h"
 #include "emscape/scenario/model/emitter.h"
+#include "emscape/scenario/model/exposure_limits.h"
 #include "emscape/scenario/model/interval.h"
 #include "emscape/scenario/model/platform.h"
 #include "emscape/scenario/model/receiver.h"
@@ -65,6 +66,7 @@ struct OutputSpec {
       -1;  ///< emitter whose signal sinr_db is computed for: index into Scenario::emitters; -1: none
   double detection_threshold =
       0.5;  ///< detection_age_s: minimum probability of a look that counts as a detection
+  ExposureGroup exposure_group = ExposureGroup::general_public;  ///< exposure_ratio: whose reference levels
 };
 
 struct ScenarioSource;  // scenario/file/source.h
