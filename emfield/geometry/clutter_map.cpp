@@ -44,6 +44,10 @@ ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emit
   grid.ranges = static_cast<int>(std::ceil(farthest_m / step_m)) + 1;
   grid.step_m = static_cast<float>(step_m);
   grid.part_of_step = static_cast<float>(cell_m / step_m);
+  grid.region_ranges = static_cast<int>(std::ceil(reach / step_m)) + 1;
+  const double repeat_cells = radar.waveform ? radar.waveform->unambiguousRange_m() / step_m : 0;
+  if (repeat_cells > 2 && repeat_cells < grid.region_ranges)
+    grid.repeat_cells = static_cast<float>(repeat_cells);
   return grid;
 }
 
@@ -95,8 +99,12 @@ bool hasClutterMap(const scenario::Emitter& radar) {
 
 ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar) {
   if (!hasClutterMap(radar)) return {};
-  return {radar.clutter->land_gamma_db, radar.clutter->land_by_cover, radar.clutter->sea_state,
-          radar.clutter->range_cell_m, azimuthsOf(radar)};
+  return {radar.clutter->land_gamma_db,
+          radar.clutter->land_by_cover,
+          radar.clutter->sea_state,
+          radar.clutter->range_cell_m,
+          radar.waveform ? radar.waveform->unambiguousRange_m() : 0,
+          azimuthsOf(radar)};
 }
 
 std::size_t clutterMapBytes(const scenario::Emitter& radar) {

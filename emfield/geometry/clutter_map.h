@@ -4,7 +4,10 @@
 /// One walk outwards per azimuth: a post is in sight if its elevation is above those of all posts before it,
 /// over an earth of effective radius. The face between it and the post before is then also in sight. The
 /// face's echo is its reflectivity at the grazing angle of the ray on it, times its area. The map depends on
-/// the radar's site, its wave and its range cell, not on the direction of its beam.
+/// the radar's site, its wave, its range cell and its pulse repetition, not on the direction of its beam.
+///
+/// Echoes of second and later trips arrive with those of nearer surfaces: a cell is the sum over all ranges
+/// that are a whole number of unambiguous ranges from its own, as far as the region's farthest point.
 #pragma once
 
 #include <cmath>
@@ -12,6 +15,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/math/device_math.h"
 #include "base/math/fast_math.h"
 #include "emfield/clutter/reflectivity.h"
 #include "emfield/ground/ground_posts.h"
@@ -34,6 +38,8 @@ struct ClutterGrid {
   int azimuths = 0, ranges = 0;
   float step_m = 1;        ///< >= the radar's range cell
   float part_of_step = 1;  ///< range cell over step
+  float repeat_cells = 0;  ///< the unambiguous range, in cells; 0: beyond the region
+  int region_ranges = 0;   ///< cells as far as the region's farthest point
 
   std::size_t cells() const { return static_cast<std::size_t>(azimuths) * static_cast<std::size_t>(ranges); }
 };
@@ -126,9 +132,35 @@ struct ClutterMapTask {
       }
       before = here;
     });
+    if (grid.repeat_cells > 0) addTrips(row);
   }
 
  private:
+  /// Replaces echoes by those that arrive at the same time after a pulse. In place: a cell is replaced when
+  /// no later one needs it.
+  EMSCAPE_HD void addTrips(ClutterCell* row) const {
+    const auto add = [row](ClutterCell& to, float place, int end) {
+      const int below = static_cast<int>(place);
+      if (below + 1 >= end) return;
+      const float weight = place - static_cast<float>(below);
+      to.echo += lerp(row[below].echo, row[below + 1].echo, weight);
+      to.echo_times_sine += lerp(row[below].echo_times_sine, row[below + 1].echo_times_sine, weight);
+    };
+    const int sources = grid.region_ranges < grid.ranges ? grid.region_ranges : grid.ranges;
+    int first_trip = 0;
+    for (; first_trip < grid.ranges && first_trip + 0.5f < grid.repeat_cells; ++first_trip) {
+      for (float place = first_trip + grid.repeat_cells; place + 1 < sources; place += grid.repeat_cells)
+        add(row[first_trip], place, sources);
+    }
+    for (int n = first_trip; n < grid.ranges; ++n) {
+      const float middle = static_cast<float>(n) + 0.5f;
+      const float in_trip = middle - grid.repeat_cells * std::floor(middle / grid.repeat_cells) - 0.5f;
+      const float place = in_trip < 0 ? 0 : in_trip > first_trip - 1.001f ? first_trip - 1.001f : in_trip;
+      row[n] = {};
+      add(row[n], place < 0 ? 0 : place, first_trip);
+    }
+  }
+
   struct Post {
     double range_m = 0, height_msl_m = 0, slant_m = 0;
     SurfaceFace face;
@@ -182,6 +214,7 @@ struct ClutterMapInputs {
   bool land_by_cover = false;
   std::optional<int> sea_state;
   double range_cell_m = 0;
+  double unambiguous_range_m = 0;
   int azimuths = 0;
 };
 ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar);

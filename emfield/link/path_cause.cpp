@@ -28,8 +28,9 @@ struct LossCause {
 
 struct Decision {
   PathCause cause = PathCause::covered;
-  double missing_db = 0;  ///< to the threshold
-  double gain_db = 0;     ///< without the cause; of terrain, clutter and pointing
+  double missing_db = 0;   ///< to the threshold
+  double gain_db = 0;      ///< without the cause; of terrain, clutter and pointing
+  bool by_filter = false;  ///< of clutter: the filter against it removes the echo as well
 };
 
 std::array<LossCause, 3> lossesOf(const PathBudget& budget, double ways) {
@@ -69,8 +70,10 @@ Decision decide(const PathBudget& budget, Quantity quantity, double threshold) {
   if (is_jammed && (is_detection ? budget.jamming.unjammed_probability >= threshold : *snr_db >= needed_db))
     return {PathCause::jamming};
   const double missing_db = needed_db - *snr_db;
-  if (missing_db <= 0 && termOf(budget, "sclnr_db").value_or(HUGE_VAL) < *snr_db)
-    return {PathCause::clutter, needed_db - *termOf(budget, "sclnr_db")};
+  if (missing_db <= 0 && termOf(budget, "sclnr_db").value_or(HUGE_VAL) < *snr_db) {
+    const double filtered_db = *snr_db + termOf(budget, "filter_response_db").value_or(0);
+    return {PathCause::clutter, needed_db - *termOf(budget, "sclnr_db"), 0, filtered_db < needed_db};
+  }
   return ofLosses(budget, 2, missing_db);
 }
 
@@ -101,6 +104,8 @@ std::string decisionText(const PathBudget& budget) {
           "beam's axis.",
           what, decision.missing_db, decision.missing_db - decision.gain_db);
     case PathCause::clutter:
+      if (decision.by_filter)
+        return "The filter against clutter decides: it removes the echo of a target of this radial speed.";
       if (decision.gain_db == 0) return "Clutter decides: its echoes hide the target.";
       [[fallthrough]];
     default:

@@ -16,8 +16,9 @@ PathClutter::PathClutter(const scenario::Snapshot& snapshot, int radar, double r
                                    makeStation(state.position, state.height_msl_m, scenario.atmosphere));
   if (!task) return;
   task_ = *task;
-  // Cells beyond the point do not affect those before it.
+  // Cells beyond the point do not affect those before it, but by echoes of later trips.
   task_.grid.ranges = static_cast<int>(range_m_ / static_cast<double>(task_.grid.step_m)) + 2;
+  if (task_.grid.repeat_cells > 0) task_.grid.ranges = std::max(task_.grid.ranges, task_.grid.region_ranges);
   post_ranges_m_ = clutterPostRanges(task_.grid, postSpacing_m(terrain));
   task_.ground = groundPosts(terrain, post_ranges_m_);
 }

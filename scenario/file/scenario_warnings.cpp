@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/units.h"
 #include "emscape/scenario/model/quantities.h"
 #include "recording/common/ticks.h"
 #include "scenario/file/far_outside.h"
@@ -237,19 +238,28 @@ void warnOfPlatformsFarOutside(const Scenario& scenario, const Section& root, Pa
   warning.addTo(context.problems);
 }
 
+struct TrackLeg {
+  double length_m, time_s;
+};
+
+/// The leg to a point of a track.
+TrackLeg legTo(const std::vector<TrackPoint>& track, std::size_t k) {
+  constexpr double kShortestStep_s = 1e-3;
+  const SitePosition &from = track[k - 1].position, &to = track[k].position;
+  return {
+      geodesicInverse(from.latitude_deg, from.longitude_deg, to.latitude_deg, to.longitude_deg).distance_m,
+      std::max(track[k].t_s - track[k - 1].t_s, kShortestStep_s)};
+}
+
 /// Warns about tracks whose legs are faster than any object.
 void warnOfSpeeds(const Scenario& scenario, const Section& root, ParseContext& context) {
-  constexpr double kFastest_mps = 10e3, kShortestStep_s = 1e-3;
+  constexpr double kFastest_mps = 10e3;
   const std::vector<Section> sections = root.sections("platforms");
   WarningOfItems warning;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const std::vector<TrackPoint>& track = scenario.platforms[i].track;
     for (std::size_t k = 1; k < track.size(); ++k) {
-      const SitePosition &from = track[k - 1].position, &to = track[k].position;
-      const double leg_m =
-          geodesicInverse(from.latitude_deg, from.longitude_deg, to.latitude_deg, to.longitude_deg)
-              .distance_m;
-      const double leg_s = std::max(track[k].t_s - track[k - 1].t_s, kShortestStep_s);
+      const auto [leg_m, leg_s] = legTo(track, k);
       if (leg_m <= kFastest_mps * leg_s) continue;
       const std::string& name = scenario.platforms[i].name;
       warning.add(sections[i].locationOf("track"), name,
@@ -368,6 +378,42 @@ void warnOfActiveTimesOutside(const Scenario& scenario, const Section& root, Par
   warning.addTo(context.problems);
 }
 
+/// Largest speed over ground (m/s) between the points of a track.
+double topSpeed_mps(const Platform& platform) {
+  double largest_mps = 0;
+  for (std::size_t k = 1; k < platform.track.size(); ++k) {
+    const TrackLeg leg = legTo(platform.track, k);
+    if (!platform.track[k - 1].gap_after) largest_mps = std::max(largest_mps, leg.length_m / leg.time_s);
+  }
+  return largest_mps;
+}
+
+/// Warns about radars that move faster than their filters are told: the spread of surface clutter across a
+/// two-way Gaussian beam abeam, v beamwidth / (4 (ln 2)^(1/2)).
+void warnOfMovingRadars(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Emitter& radar = scenario.emitters[i];
+    if (!radar.clutter || !radar.clutter->mti || !radar.clutter->hasSurface()) continue;
+    const double speed_mps = topSpeed_mps(scenario.platforms[static_cast<std::size_t>(radar.platform)]);
+    const double spread_mps =
+        speed_mps * degToRad(radar.antenna->beamwidth_az_deg) / (4 * std::sqrt(std::log(2.0)));
+    constexpr double kRounding = 0.99;
+    if (spread_mps * kRounding <= std::max(radar.clutter->mti->surface_spread_mps, 0.05)) continue;
+    warning.add(
+        sections[i].section("clutter").locationOf("mti"), radar.name,
+        fmt::format(
+            "radar '{}' moves at up to {:.0f} m/s: the Doppler shift of the ground by that is taken as "
+            "compensated by the radar, its altitude line and side lobes are left out, and abeam the "
+            "width of the beam spreads the clutter by {:.2g} m/s, which 'surface_spread_m_s: {:.2g}' "
+            "would include",
+            radar.name, speed_mps, spread_mps,
+            std::hypot(spread_mps, radar.clutter->mti->surface_spread_mps)));
+  }
+  warning.addTo(context.problems);
+}
+
 /// Reminds once of the emitters that are switched off.
 void tellOfDisabledEmitters(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<Section> sections = root.sections("emitters");
@@ -392,6 +438,7 @@ void tellOfDisabledEmitters(const Scenario& scenario, const Section& root, Parse
 void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseContext& context) {
   warnOfTimesOutsideTracks(scenario, root, context);
   warnOfActiveTimesOutside(scenario, root, context);
+  warnOfMovingRadars(scenario, root, context);
   tellOfDisabledEmitters(scenario, root, context);
   warnOfEmittersWithoutBand(scenario, root, context);
   warnOfIdleJammers(scenario, root, context);

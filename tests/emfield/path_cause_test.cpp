@@ -56,6 +56,10 @@ TEST(PathCause, IsJammingClutterRangeOrSilenceWhereTheyTakeTheDetectionAway) {
   budget.terms[2].value = 0.01;
   budget.terms.push_back({"sclnr_db", "", -5, "dB", ""});
   EXPECT_EQ(causeOfDetection(budget), PathCause::clutter);
+  EXPECT_EQ(decisionText(budget), "Clutter decides: its echoes hide the target.");
+  budget.terms.push_back({"filter_response_db", "", -HUGE_VAL, "dB", ""});
+  EXPECT_EQ(decisionText(budget),
+            "The filter against clutter decides: it removes the echo of a target of this radial speed.");
 }
 
 TEST(PathCause, OfASignalCountsItsLossesOnce) {
