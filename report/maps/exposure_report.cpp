@@ -1,6 +1,7 @@
 #include "report/maps/exposure_report.h"
 
 #include <cmath>
+#include <map>
 
 #include "base/files/whole_file.h"
 #include "base/text/csv_cell.h"
@@ -33,6 +34,21 @@ Json bestName(const Exposure& exposure, const ExposureRow& row) {
   return row.best < 0 ? Json(nullptr) : Json(exposure.names[static_cast<std::size_t>(row.best)]);
 }
 
+/// "terrain 62 %, noise 38 %": what decides in rows below the threshold; empty: not known.
+std::string causesText(const Exposure& exposure) {
+  std::map<emfield::PathCause, int> counts;
+  int all = 0;
+  for (const ExposureRow& row : exposure.rows) {
+    if (!row.decides) continue;
+    ++counts[*row.decides];
+    ++all;
+  }
+  std::string text;
+  for (const auto& [cause, count] : counts)
+    text += fmt::format("{}{} {:.0f} %", text.empty() ? "" : ", ", toString(cause), 100.0 * count / all);
+  return text;
+}
+
 }  // namespace
 
 Json exposureJson(const Exposure& exposure) {
@@ -62,6 +78,7 @@ Json exposureJson(const Exposure& exposure) {
                             {"state", study::toString(row.state)},
                             {"each", each},
                             {"best", bestName(exposure, row)},
+                            {"decides", row.decides ? Json(toString(*row.decides)) : Json(nullptr)},
                             {"cumulative_probability", number(row.cumulative_probability)}});
   }
   json["warnings"] = joinedWarnings(exposure.warnings);
@@ -103,6 +120,9 @@ std::string exposureText(const Exposure& exposure) {
     row(summary, fmt::format("{:.0f} %", 100 * summary.best_fraction));
   }
   row(exposure.together, "");
+  const std::string causes = causesText(exposure);
+  if (!causes.empty())
+    out.add("Where it is below the threshold, by the number of times, decide: {}\n", causes);
   if (std::isfinite(exposure.together.cumulative_probability)) {
     out.add(
         "first s: when one look reaches the threshold; in any look: the probability of a detection in all "
@@ -125,7 +145,7 @@ void writeExposureCsv(const Exposure& exposure, const std::string& file) {
     out << "time_s,latitude_deg,longitude_deg,height_msl_m,height_agl_m,"
         << scenario::info(exposure.request.quantity).name;
     for (const std::string& name : exposure.names) out << "," << csvCell(name);
-    out << ",best,cumulative_probability,state\n";
+    out << ",best,cumulative_probability,state,decides\n";
     for (const ExposureRow& row : exposure.rows) {
       const auto decimals = [](double value, int count) {
         return std::isfinite(value) ? fmt::format("{:.{}f}", value, count) : std::string();
@@ -136,7 +156,7 @@ void writeExposureCsv(const Exposure& exposure, const std::string& file) {
       for (const double value : row.each) out << "," << text(value);
       const std::string best = row.best < 0 ? "" : exposure.names[static_cast<std::size_t>(row.best)];
       out << "," << csvCell(best) << "," << text(row.cumulative_probability) << ","
-          << study::toString(row.state) << "\n";
+          << study::toString(row.state) << "," << (row.decides ? toString(*row.decides) : "") << "\n";
     }
   });
 }

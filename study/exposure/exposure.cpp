@@ -14,6 +14,7 @@
 #include "emscape/scenario/model/waveform.h"
 #include "emscape/volume/dense_volume.h"
 #include "scenario/scan/scan_sampling.h"
+#include "study/maps/causes.h"
 #include "study/maps/warnings.h"
 
 namespace emscape::study {
@@ -65,6 +66,11 @@ class Track {
     own->output.interval = {};
     if (own->output.combine != scenario::CombineMode::max) own->output.combine = scenario::CombineMode::sum;
     scenario_ = own;
+    finds_causes_ =
+        hasCauses(request.quantity) &&
+        std::none_of(own->emitters.begin(), own->emitters.end(), [](const scenario::Emitter& emitter) {
+          return emitter.propagation.model == propagation::PropagationModel::parabolic_equation;
+        });
     options_.quantities.clear();
     options_.also_per_emitter = true;
     options_.allow_missing_terrain = scenario::mayLackTerrain(*own, true);
@@ -174,6 +180,10 @@ class Track {
     const bool is_bound = !partly_unknown.empty() && partly_unknown[index] != 0;
     if (is_bound && row.value < request_.threshold) row.value = NAN;  // the others may reach it
     row.state = stateOf(row.value, request_.threshold);
+    if (row.state == ExposureState::below && finds_causes_) {
+      const emfield::PathEnd end{state.position, state.height_msl_m};
+      row.decides = causeAt(snapshot, request_.quantity, request_.threshold, end, terrain_.get());
+    }
     const double floor = scenario_->output.floor;
     double largest = -HUGE_VAL;
     for (std::size_t n = 0; n < emitters.size(); ++n) {
@@ -193,6 +203,7 @@ class Track {
   emfield::FieldOptions options_;
   std::shared_ptr<const scenario::Scenario> scenario_;
   std::vector<std::size_t> channels_;  ///< of the solver, by emitter
+  bool finds_causes_ = false;
 };
 
 /// Sets the cumulative probabilities of detection.

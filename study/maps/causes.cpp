@@ -58,13 +58,30 @@ bool hasCauses(scenario::Quantity quantity) {
   }
 }
 
+std::optional<PathCause> causeAt(const scenario::Snapshot& snapshot, scenario::Quantity quantity,
+                                 double threshold, const emfield::PathEnd& end,
+                                 const scenario::Terrain* terrain) {
+  const std::vector<scenario::Emitter>& emitters = snapshot.scenario->emitters;
+  BestPath best(quantity);
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    if (scenario::needsRadar(quantity) && emitters[e].kind != scenario::EmitterKind::radar) continue;
+    try {
+      best.add(
+          emfield::pathBudget(snapshot, static_cast<int>(e), end, emitters[e].propagation.model, terrain));
+    } catch (const Error&) {  // its ends have no path, or an end is absent
+    }
+  }
+  if (!best.best()) return std::nullopt;
+  return emfield::causeOf(*best.best(), quantity, threshold);
+}
+
 std::vector<float> causesOf(const MapGrid& grid, const CoverageRequest& request,
                             const std::shared_ptr<const scenario::Scenario>& scenario,
                             const scenario::Terrain* terrain, const MapHeight& height, double time_s,
                             const std::vector<PixelAnswer>& answers,
                             const std::function<bool(std::size_t)>& isCovered) {
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain, time_s);
-  const auto causeAt = [&](std::size_t p) {
+  const auto causeOfPixel = [&](std::size_t p) {
     if (answers[p] != PixelAnswer::exact && answers[p] != PixelAnswer::bound) return NAN;
     if (isCovered(p)) return static_cast<float>(PathCause::covered);
     const auto [latitude_deg, longitude_deg] = grid.positions[p];
@@ -74,24 +91,15 @@ std::vector<float> causesOf(const MapGrid& grid, const CoverageRequest& request,
     const emfield::PathEnd end{
         {latitude_deg, longitude_deg, height_msl_m + geoidUndulation_m(latitude_deg, longitude_deg)},
         height_msl_m};
-    BestPath best(request.quantity);
-    for (std::size_t e = 0; e < scenario->emitters.size(); ++e) {
-      const scenario::Emitter& emitter = scenario->emitters[e];
-      if (scenario::needsRadar(request.quantity) && emitter.kind != scenario::EmitterKind::radar) continue;
-      try {
-        best.add(emfield::pathBudget(snapshot, static_cast<int>(e), end, emitter.propagation.model, terrain));
-      } catch (const Error&) {  // its ends have no path, or an end is absent
-      }
-    }
-    return best.best()
-               ? static_cast<float>(emfield::causeOf(*best.best(), request.quantity, request.threshold))
-               : NAN;
+    const std::optional<PathCause> cause =
+        causeAt(snapshot, request.quantity, request.threshold, end, terrain);
+    return cause ? static_cast<float>(*cause) : NAN;
   };
   std::vector<float> causes(grid.pixels());
   parallelFor(static_cast<int>(grid.pixels()), 16, [&](int begin, int end) {
     for (int p = begin; p < end; ++p) {
       checkpoint();
-      causes[p] = causeAt(static_cast<std::size_t>(p));
+      causes[p] = causeOfPixel(static_cast<std::size_t>(p));
     }
   });
   return causes;

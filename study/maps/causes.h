@@ -1,10 +1,13 @@
-/// The map `cause`: what decides that positions are not covered.
+/// What decides that positions are not covered: at one position, and the map `cause`.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/emfield/link/path_cause.h"
 #include "emscape/study/maps/coverage.h"
 
 namespace emscape::study {
@@ -12,8 +15,14 @@ namespace emscape::study {
 /// True for quantities that the budget of a path has.
 bool hasCauses(scenario::Quantity quantity);
 
-/// For each position with a known answer the number of its emfield::PathCause, by the path of the active
-/// emitter with the largest value; NaN for others, and for positions to which no emitter has a path.
+/// What decides at a point, by the path of the active emitter with the largest value; none if no emitter has
+/// a path.
+std::optional<emfield::PathCause> causeAt(const scenario::Snapshot& snapshot, scenario::Quantity quantity,
+                                          double threshold, const emfield::PathEnd& end,
+                                          const scenario::Terrain* terrain);
+
+/// For each position with a known answer the number of its emfield::PathCause; NaN for others, and for
+/// positions to which no emitter has a path.
 /// @param scenario   with radars that look at targets, as the map's
 /// @param isCovered  of a position, by the map of all emitters
 std::vector<float> causesOf(const MapGrid& grid, const CoverageRequest& request,

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "emfield/excess/model_check.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
@@ -151,6 +152,34 @@ std::optional<std::string> heightWarning(const std::vector<CoverageRequest>& req
   return std::nullopt;
 }
 
+/// Warnings for maps below the lowest height of an emitter's model.
+void addLowHeights(const scenario::Scenario& scenario, const std::vector<CoverageRequest>& requests,
+                   std::vector<std::string>& warnings) {
+  std::set<std::string> told;
+  for (const CoverageRequest& request : requests) {
+    for (const MapHeight& height : request.heights) {
+      if (height.reference != emfield::HeightReference::ground) continue;
+      for (const scenario::Emitter& emitter : scenario.emitters) {
+        if (scenario::needsRadar(request.quantity) && emitter.kind != scenario::EmitterKind::radar) continue;
+        const std::vector<std::string> low = emfield::lowEndWarnings(emitter, HUGE_VAL, height.metres);
+        for (const std::string& warning : low)
+          if (told.insert(warning).second) warnings.push_back(warning);
+      }
+    }
+  }
+}
+
+/// A warning for maps that show the margin of burn-through as coverage.
+std::optional<std::string> burnThroughWarning(const std::vector<CoverageRequest>& requests) {
+  const bool has_margin = std::any_of(requests.begin(), requests.end(), [](const CoverageRequest& request) {
+    return request.quantity == Quantity::burn_through_margin_db;
+  });
+  if (!has_margin) return std::nullopt;
+  return "burn_through_margin_db compares the echo with jamming alone: noise, clutter and limits of range "
+         "may "
+         "prevent detection where it is positive; the product burn_through of detection_probability has them";
+}
+
 emfield::FieldOptions withoutQuantities(emfield::FieldOptions options) {
   options.quantities.clear();
   return options;
@@ -166,6 +195,7 @@ std::optional<double> defaultThreshold(Quantity quantity) {
     case Quantity::intercept_margin_db:
       return 0.0;
     case Quantity::emitter_count:
+    case Quantity::exposure_ratio:
       return 1.0;
     default:
       return std::nullopt;
@@ -348,9 +378,10 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     const auto inactive = inactiveWarning(at_targets[s], terrain, requests.front().quantity, times_s);
     const std::string outside = scenario::outsideClockText(times_s, at_targets[s]->clock);
     if (!outside.empty()) warnings[s].push_back(outside);
-    for (const auto& warning :
-         {inactive, scanWarning(*at_targets[s], requests), impl_->scale_warning, heightWarning(requests)})
+    for (const auto& warning : {inactive, scanWarning(*at_targets[s], requests), impl_->scale_warning,
+                                heightWarning(requests), burnThroughWarning(requests)})
       if (warning) warnings[s].push_back(*warning);
+    addLowHeights(*at_targets[s], requests, warnings[s]);
     for (std::string& warning : instrumentedRangeWarnings(at_targets[s], terrain, requests.front().quantity,
                                                           impl_->grid, times_s.front()))
       warnings[s].push_back(std::move(warning));

@@ -105,7 +105,7 @@ TEST(Exposure, WritesFilesOfEachKindAndTheSameOnesAgain) {
   });
   EXPECT_THAT(readFile(folder / "one/a.csv"),
               StartsWith("time_s,latitude_deg,longitude_deg,height_msl_m,height_agl_m,detection_probability,"
-                         "search radar,best,cumulative_probability,state\n0,"));
+                         "search radar,best,cumulative_probability,state,decides\n0,"));
   const json report = json::parse(readFile(folder / "one/a.json"));
   for (const char* key : {"scenario", "platform", "quantity", "threshold", "radar_look", "cross_section",
                           "emitters", "together", "each", "rows", "warnings"})

@@ -185,6 +185,18 @@ TEST(Exposure, DetectionEqualsLinkToTheTarget) {
   }
 }
 
+TEST(Exposure, NamesWhatDecidesWhereTheThresholdIsNotReached) {
+  const Given given("links.yaml");
+  ExposureRequest request;
+  request.platform = 3;
+  ASSERT_EQ(given.scenario->platforms[3].name, "helicopter");
+  request.times_s = {0, 10, 20, 40};
+  const Exposure exposure = computeExposure(given.scenario, given.terrain, request, {});
+  for (const ExposureRow& row : exposure.rows)
+    EXPECT_EQ(row.decides.has_value(), row.state == ExposureState::below) << row.time_s;
+  EXPECT_EQ(exposure.rows.front().decides, emfield::PathCause::terrain) << "behind the ridge";
+}
+
 TEST(Exposure, ThePlatformsOwnEmittersAreLeftOut) {
   const Given given("jacksboro.yaml");
   constexpr int kHelicopter = 3;

@@ -9,6 +9,7 @@
 
 #include "emscape/base/enum_names.h"
 #include "emscape/base/progress.h"
+#include "emscape/emfield/link/path_cause.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/model/quantities.h"
@@ -48,6 +49,9 @@ struct ExposureRow {
   std::vector<double> each;  ///< one per Exposure::emitters; -infinity: off; NaN: unknown or absent
   ExposureState state = ExposureState::unknown;
   int best = -1;  ///< index into `each` of the largest value; -1: none
+  /// What decides that a value is below the threshold; none for other states, and where it is not computed:
+  /// for quantities that the budget of a path lacks, and with emitters of parabolic_equation.
+  std::optional<emfield::PathCause> decides;
   /// Probability of detection by any radar so far: 1 - prod(1 - Pd) over all looks with a known value. NaN
   /// unless the quantity is detection_probability and the look is target.
   double cumulative_probability = 0;
