@@ -96,6 +96,7 @@ propagation::TerminalClutter terminalClutter(const Scenario& scenario, const Emi
   clutter.frequency_ghz = static_cast<float>(emitter.frequency_hz / 1e9);
   clutter.deviate = static_cast<float>(-propagation::normalDeviate(ground.terminal_clutter_percent / 100));
   clutter.below_m = static_cast<float>(ground.terminal_clutter_below_m);
+  clutter.is_larger = ground.terminal_clutter_combine == propagation::ClutterCombination::larger;
   const double ground_msl_m =
       terrain == nullptr ? 0 : terrain->heightMsl_m(station.latitude_deg, station.longitude_deg);
   clutter.at_transmitter = ground.terminal_clutter_ends == propagation::ClutterEnds::both &&

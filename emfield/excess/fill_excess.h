@@ -168,7 +168,8 @@ struct ExcessTask {
     const float* const t_m = grid.t_m + grid.firstLayer(segment);
     for (int k = begin; k < end; ++k) {
       const auto height_msl_m = static_cast<float>(heightMsl_m(grid.columns[c], static_cast<double>(t_m[k])));
-      excess_db[k] += terminal.lossDb(static_cast<float>(part.range_m), height_msl_m - ground_msl_m);
+      excess_db[k] =
+          terminal.withLossDb(excess_db[k], static_cast<float>(part.range_m), height_msl_m - ground_msl_m);
     }
   }
 
@@ -202,8 +203,8 @@ struct ExcessTask {
       } else {
         warnings |= model(part, scratch, excess_db);
       }
-      addAir(c, segment, part, 0, part.count, excess_db);
       addTerminal(c, segment, part, 0, part.count, excess_db);
+      addAir(c, segment, part, 0, part.count, excess_db);
     }
     return warnings;
   }

@@ -4,14 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "emfield/excess/clutter_text.h"
 #include "emfield/excess/elevation_cut.h"
 #include "emfield/excess/emitter_excess.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "propagation/clear_air/climate.h"
+#include "propagation/diffraction/diffraction.h"
+#include "propagation/itm/itm.h"
+#include "propagation/p528/p528.h"
 #include "propagation/parabolic_equation/air/path_air.h"
 #include "propagation/registry/model_info.h"
+#include "propagation/two_ray/two_ray.h"
 #include "scenario/scan/swept_antenna.h"
 
 namespace emscape::emfield {
@@ -47,20 +53,25 @@ const SourceLocation& locationOf(InputOrigin origin, const Scenario& scenario, c
 std::vector<std::string> coarseIntervals(const Scenario& scenario, const Emitter& emitter) {
   using scenario::IntervalKind;
   using scenario::ScanKind;
-  constexpr double kStep_deg = 360.0 / scenario::kMaxSweptAzimuths, kWorthSaying_db = 0.1;
+  constexpr double kWorthSaying_db = 0.1;
   const scenario::IntervalSpec& interval = scenario.output.interval;
   const ScanKind scan = emitter.scan.kind;
   const bool has_table = interval.kind == IntervalKind::max_hold || interval.kind == IntervalKind::mean;
   const bool is_grid = scan == ScanKind::sector || scan == ScanKind::raster || scan == ScanKind::dwell_list;
   if (!has_table || !is_grid) return {};
-  const double width_deg = std::min(emitter.antenna->beamwidth_az_deg, emitter.antenna->beamwidth_el_deg);
-  const double low_db =
-      12 * std::pow(kStep_deg / 2 / width_deg, 2);  // of a Gaussian beam between two entries
+  Emitter always_active = emitter;
+  always_active.active_s.clear();
+  const double low_db = scenario::lowOnAxis_db(
+      *emitter.antenna,
+      scenario::sweepOf(always_active, 0,
+                        scenario::intervalDuration_s(interval, emitter.scan, scenario.clock)));
   if (low_db < kWorthSaying_db) return {};
-  return {
-      fmt::format("emitter '{}': an interval's pattern is tabulated every {} degrees, and the beam is {:g} "
-                  "degrees wide: values of the interval on its axis are up to {:.1f} dB low",
-                  emitter.name, kStep_deg, width_deg, low_db)};
+  return {fmt::format(
+      "emitter '{}': the beam is {:g} degrees wide, and its scan has too many directions for a table of an "
+      "interval's pattern that is fine around all of them: values of the interval on its axis are up to "
+      "{:.1f} "
+      "dB low; a shorter interval has fewer directions",
+      emitter.name, std::min(emitter.antenna->beamwidth_az_deg, emitter.antenna->beamwidth_el_deg), low_db)};
 }
 
 }  // namespace
@@ -106,12 +117,48 @@ std::vector<std::string> pathWarnings(const Emitter& emitter, const propagation:
   return messages;
 }
 
+std::optional<double> lowestHeight_m(propagation::PropagationModel model) {
+  using propagation::PropagationModel;
+  switch (model) {
+    case PropagationModel::diffraction:
+      return propagation::kDiffractionAboveGround.min;
+    case PropagationModel::itm:
+      return propagation::kItmHeight.min;
+    case PropagationModel::p1812:
+    case PropagationModel::p452:
+      return propagation::kClearAirHeight.min;
+    case PropagationModel::two_ray:
+      return propagation::kTwoRayHeight.min;
+    case PropagationModel::p528:
+      return propagation::kP528Height.min;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::vector<std::string> lowEndWarnings(const Emitter& emitter, double emitter_agl_m, double point_agl_m) {
+  constexpr double kRounding_m = 1e-3;
+  const std::optional<double> lowest_m = lowestHeight_m(emitter.propagation.model);
+  std::vector<std::string> warnings;
+  const auto check = [&](const char* end, double height_agl_m) {
+    if (!lowest_m || !(height_agl_m < *lowest_m - kRounding_m)) return;
+    warnings.push_back(fmt::format(
+        "emitter '{}': {} is {:.2g} m above the ground; '{}' takes it as {:g} m high, and its loss is too "
+        "low, "
+        "by up to 20 lg of the ratio of the heights where waves graze the ground",
+        emitter.name, end, std::max(height_agl_m, 0.0), toString(emitter.propagation.model), *lowest_m));
+  };
+  check("its antenna", emitter_agl_m);
+  check("the point", point_agl_m);
+  return warnings;
+}
+
 double partAtSeaLevel(const std::vector<float>& heights_m) {
-  constexpr float kSame_m = 0.5f;
+  constexpr float kSame_m = 0.5f;  // the sea is at or below it: some files have its bottom
   std::size_t count = 0, known = 0;
   for (const float height_m : heights_m) {
     known += std::isnan(height_m) ? 0 : 1;
-    count += std::abs(height_m) <= kSame_m ? 1 : 0;
+    count += height_m <= kSame_m ? 1 : 0;
   }
   return known == 0 ? 0 : static_cast<double>(count) / static_cast<double>(known);
 }
@@ -143,7 +190,7 @@ std::vector<std::string> seaWarnings(const Scenario& scenario, const Emitter& em
   if (hasLandOnly(emitter) && at_sea_level > kWorthSaying) {
     warnings.push_back(fmt::format(
         "emitter '{}': its clutter takes all ground for land, also the {:.0f} % of it that are at "
-        "mean sea level; where that is water, 'sea_state' of the clutter says so",
+        "or below mean sea level; where that is water, 'sea_state' of the clutter says so",
         emitter.name, 100 * at_sea_level));
   }
   if (!(lowest_m < kNoise_m)) return warnings;

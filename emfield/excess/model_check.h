@@ -2,6 +2,7 @@
 /// registry; this module adds the emitter's name and the line in the scenario.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,14 +25,22 @@ std::vector<std::string> checkModel(const scenario::Scenario& scenario, const sc
 std::vector<std::string> pathWarnings(const scenario::Emitter& emitter, const propagation::PathInputs& inputs,
                                       unsigned warnings);
 
+/// Height (m) above the ground, or above the surface of models on a smooth one, as which a model takes lower
+/// ends of paths; none: it has no such height.
+std::optional<double> lowestHeight_m(propagation::PropagationModel model);
+
+/// Warnings of ends of a path below that height. @param emitter_agl_m, point_agl_m  above ground or surface
+std::vector<std::string> lowEndWarnings(const scenario::Emitter& emitter, double emitter_agl_m,
+                                        double point_agl_m);
+
 /// A warning if ground lies clearly below mean sea level and the emitter's model, its clutter or the ground's
-/// constants take it for sea; and one if its clutter takes ground at mean sea level for land.
+/// constants take it for sea; and one if its clutter takes ground at or below mean sea level for land.
 /// @param lowest_m  of the ground (above mean sea level); NaN: unknown
-/// @param at_sea_level  part of the ground that is at mean sea level, 0..1; see partAtSeaLevel()
+/// @param at_sea_level  part of the ground that is at or below mean sea level, 0..1; see partAtSeaLevel()
 std::vector<std::string> seaWarnings(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                      double lowest_m, double at_sea_level);
 
-/// Part of heights (m above mean sea level) that are within 0.5 m of it; 0 without heights.
+/// Part of heights (m above mean sea level) of at most 0.5 m; 0 without heights.
 double partAtSeaLevel(const std::vector<float>& heights_m);
 /// The same of a sample of the region's ground; 0 unless some clutter is of land without sea.
 double partAtSeaLevel(const scenario::Scenario& scenario, const scenario::Terrain& terrain);

@@ -413,17 +413,17 @@ inline void setLosses(const SectorTask& sector, PathMemory& memory) {
   float* of_path_db = loss_db;
   for (const SectorPath* const to : memory.searched) {
     const auto column = static_cast<std::size_t>(to->column);
+    if (sector.task.terminal.isSet()) {
+      for (int n = 0; n < grid.layers; ++n) {
+        const auto height_msl_m = static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n]));
+        of_path_db[n] = sector.task.terminal.withLossDb(of_path_db[n], static_cast<float>(to->distance_m),
+                                                        height_msl_m - to->ground_msl_m);
+      }
+    }
     if (!sector.task.air.isClear()) {
       const propagation::AirColumn above(sector.task.air, static_cast<float>(to->distance_m));
       for (int n = 0; n < grid.layers; ++n) {
         of_path_db[n] += above.lossDb(static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n])));
-      }
-    }
-    if (sector.task.terminal.isSet()) {
-      for (int n = 0; n < grid.layers; ++n) {
-        const auto height_msl_m = static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n]));
-        of_path_db[n] +=
-            sector.task.terminal.lossDb(static_cast<float>(to->distance_m), height_msl_m - to->ground_msl_m);
       }
     }
     for (int n = 0; n < grid.layers; ++n) {

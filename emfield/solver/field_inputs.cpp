@@ -20,9 +20,9 @@ auto membersOf(const GeodeticPosition& position) {
 }
 auto membersOf(const propagation::Ground& ground) {
   const auto& [kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, sea_by_height,
-               terminal_clutter, percent, below_m, ends, place] = ground;
+               terminal_clutter, percent, below_m, ends, combine, place] = ground;
   return std::tie(kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, sea_by_height,
-                  terminal_clutter, percent, below_m, ends);
+                  terminal_clutter, percent, below_m, ends, combine);
 }
 auto membersOf(const propagation::Atmosphere& atmosphere) {
   const auto& [k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,
@@ -72,8 +72,8 @@ auto membersOf(const HeardRanges& heard) {
   return std::tie(farthest_m, repeat_m, pulse_m);
 }
 auto membersOf(const ClutterMapInputs& map) {
-  const auto& [land_gamma_db, land_by_cover, sea_state, range_cell_m, azimuths] = map;
-  return std::tie(land_gamma_db, land_by_cover, sea_state, range_cell_m, azimuths);
+  const auto& [land_gamma_db, land_by_cover, sea_state, range_cell_m, unambiguous_range_m, azimuths] = map;
+  return std::tie(land_gamma_db, land_by_cover, sea_state, range_cell_m, unambiguous_range_m, azimuths);
 }
 
 template <class T>
@@ -139,14 +139,15 @@ bool sameTable(const float* a, const float* b, long long count) {
 
 bool samePattern(const PatternView& a, const PatternView& b) {
   const auto& [kind, gaussian_azimuth, gaussian_elevation, side_lobe_amplitude, lobe_tangent, azimuth_table,
-               elevation_table, grid_table, azimuth_count, elevation_count, element_exponent] = a;
+               elevation_table, azimuth_count, elevation_count, grid_table, columns, rows, element_exponent] =
+      a;
   return kind == b.kind && gaussian_azimuth == b.gaussian_azimuth &&
          gaussian_elevation == b.gaussian_elevation && side_lobe_amplitude == b.side_lobe_amplitude &&
          lobe_tangent == b.lobe_tangent && azimuth_count == b.azimuth_count &&
-         elevation_count == b.elevation_count && element_exponent == b.element_exponent &&
-         sameTable(azimuth_table, b.azimuth_table, azimuth_count) &&
+         elevation_count == b.elevation_count && columns == b.columns && rows == b.rows &&
+         element_exponent == b.element_exponent && sameTable(azimuth_table, b.azimuth_table, azimuth_count) &&
          sameTable(elevation_table, b.elevation_table, elevation_count) &&
-         sameTable(grid_table, b.grid_table, static_cast<long long>(azimuth_count) * elevation_count);
+         sameTable(grid_table, b.grid_table, static_cast<long long>(columns) * rows);
 }
 
 bool sameChannelWeight(const ChannelWeight& a, const ChannelWeight& b) {

@@ -25,7 +25,7 @@ namespace emscape::propagation {
 // clang-format off
 constexpr ModelLimit kItmFrequency{"frequency", "MHz", 1e6, 20, 20000, Beyond::refused, ""};
 constexpr ModelLimit kItmProvenFrequency{"frequency", "MHz", 1e6, 40, 10000, Beyond::warned, "range of the data behind the model"};
-constexpr ModelLimit kItmHeight{"antenna height above ground", "m", 1, 0.5, 3000, Beyond::refused, ""};
+constexpr ModelLimit kItmHeight{"antenna height above ground", "m", 1, 0.5, 3000, Beyond::refused, "paths and fields take a lower end as 0.5 m high, with a warning; above, diffraction"};
 constexpr ModelLimit kItmProvenHeight{"antenna height above ground", "m", 1, 1, 1000, Beyond::warned, "range of the data behind the model"};
 constexpr ModelLimit kItmDistance{"distance", "km", 1e3, 1, 2000, Beyond::warned, ""};
 constexpr ModelLimit kItmProvenDistance{"distance", "km", 1e3, 0, 1000, Beyond::warned, "range of the data behind the model"};

@@ -153,7 +153,7 @@ Explanation explainItm(const PathInputs& inputs, PathColumn& path) {
                   loss_db - (1 - weight) * diffraction_db);
   explanation.add("diffraction", fmt::format("diffraction by the rest, {:.2f}", 1 - weight),
                   (1 - weight) * diffraction_db);
-  explanation.why = weight == 1 ? "both ends and the distance are within ITM's limits"
+  explanation.why = weight == 1 ? "no end is too high, and the distance is within ITM's limits"
                     : weight == 0
                         ? "an end or the distance is outside ITM's limits: diffraction is used instead"
                         : "near ITM's limits: a weighted mean with diffraction";

@@ -51,6 +51,7 @@ struct TerminalClutter {
   float deviate = 0;
   float below_m = 0;            ///< height above the ground up to which an end is within the clutter
   bool at_transmitter = false;  ///< the emitter's end is
+  bool is_larger = false;       ///< of this loss and the model's excess, the larger counts, not the sum
 
   EMSCAPE_HD bool isSet() const { return frequency_ghz > 0; }
 
@@ -65,6 +66,12 @@ struct TerminalClutter {
     const int count = ends(distance_m, height_agl_m);
     if (count == 0) return 0;
     return float(count) * p2108LossDb(frequency_ghz, distance_m, deviate);
+  }
+  /// A model's excess loss (dB, NaN: unknown), without that of the air, with this loss.
+  EMSCAPE_HD float withLossDb(float excess_db, float distance_m, float height_agl_m) const {
+    const float loss_db = lossDb(distance_m, height_agl_m);
+    if (!is_larger || loss_db == 0) return excess_db + loss_db;
+    return loss_db > excess_db ? loss_db : excess_db;
   }
 };
 

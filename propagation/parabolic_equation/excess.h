@@ -14,7 +14,8 @@ namespace emscape::propagation {
 enum PeWarning : unsigned {
   kPePointwiseAir = 1,
   kPeDuctOverLand = 2,  ///< the path has land, over which the evaporation duct is left out
-  kPeProfileEnds = 4    ///< the air was measured up to less than the antenna's or the field's height
+  kPeProfileEnds = 4,   ///< the air was measured up to less than the antenna's or the field's height
+  kPeNearObstacle = 8   ///< of a single path: ground above the ray within two steps of an end
 };
 constexpr int kPePartBits = 10;
 constexpr int kPeStaircaseShift = 4;                             ///< staircasePart()

@@ -250,6 +250,18 @@ void addGroundNeeds(const PathInputs& inputs, const ExcessColumn& column, double
   needs.ridge_rad = ground.ridge_rad;
 }
 
+/// True if ground rises above the straight ray within two steps of an end.
+bool hasNearObstacle(const TerrainProfile& profile, double begin_msl_m, double end_msl_m, double range_m,
+                     double step_m) {
+  for (int i = 1; i + 1 < profile.count; ++i) {
+    const double at_m = double(profile.range_m[i]);
+    if (std::min(at_m, range_m - at_m) > 2 * step_m || !(at_m > 0 && at_m < range_m)) continue;
+    if (double(profile.height_msl_m[i]) > begin_msl_m + at_m / range_m * (end_msl_m - begin_msl_m))
+      return true;
+  }
+  return false;
+}
+
 PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const RefractivityAlongPath& air,
                     MarchGrid grid, bool has_terrain) {
   const int steps = int(std::ceil(column.range_m / grid.range_step_m - 1e-9));
@@ -337,6 +349,13 @@ std::vector<std::string> peWarningMessages(unsigned warnings) {
     messages.emplace_back(
         "the profile of the air ends below the antenna or the top of the field: above it the air is "
         "standard");
+  }
+  if (warnings & kPeNearObstacle) {
+    messages.emplace_back(
+        "ground rises above the ray within two range steps of an end, where the march hardly resolves it: "
+        "the "
+        "loss may be wrong by 20 dB and more, and differ as much with the ends exchanged; compare with "
+        "'diffraction'");
   }
   const double behind_percent = percentOf(warnings, kPeBehindShift);
   if (behind_percent >= 10) {
@@ -456,6 +475,9 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       march_text = march.text;
       path.addWarnings(partWarning(march.staircase_part, kPeStaircaseShift));
     }
+    if (has_terrain && hasNearObstacle(profile, inputs.site.height_msl_m, double(end_msl_m), column.range_m,
+                                       automatic.grid.range_step_m))
+      path.addWarnings(kPeNearObstacle);
     if (airs.size() > 1) march_text += fmt::format(", {} members of the air", airs.size());
     const auto& refractivity = inputs.emitter.atmosphere.refractivity;
     others.setEquation(ofMembers_db(losses_db, refractivity ? refractivity->quantile : std::nullopt),

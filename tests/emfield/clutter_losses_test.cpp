@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "emfield/excess/clutter_text.h"
 #include "emfield/excess/emitter_excess.h"
@@ -155,19 +157,45 @@ TEST(ClutterHeights, AndTerminalClutterAreTheSameInFieldsAndOnPaths) {
     for (const PropagationModel model :
          {PropagationModel::free_space, PropagationModel::horizon, PropagationModel::diffraction,
           PropagationModel::two_ray, PropagationModel::itm, PropagationModel::p1812}) {
-      for (const bool with_terminal : {false, true}) {
+      for (const char* const terminal : {"none", "sum", "larger"}) {
+        const bool with_terminal = terminal != std::string("none");
         const auto scenario = mastOf(model, 30);
+        if (terminal == std::string("larger"))
+          scenario->ground.terminal_clutter_combine = propagation::ClutterCombination::larger;
         scenario->ground.terminal_clutter =
             with_terminal ? TerminalClutterModel::p2108 : TerminalClutterModel::none;
         const std::vector<float> field = excessOfSurface(scenario, wood, latitudes, 3);
         for (std::size_t i = 0; i < latitudes.size(); ++i) {
           const PathBudget budget = budgetTo(scenario, *wood, latitudes[i], 103);
           EXPECT_NEAR(double(field[i]), budget.find("power_density_dbwm2")->value, 0.1)
-              << toString(model) << " at " << latitudes[i] << (with_terminal ? ", terminal" : "");
+              << toString(model) << " at " << latitudes[i] << ", terminal clutter: " << terminal;
           EXPECT_EQ(budget.find("terminal_clutter_db") != nullptr, with_terminal);
         }
       }
     }
+  }
+}
+
+TEST(TerminalClutter, IsAddedOrReplacesASmallerLossByTerrain) {
+  // Hills of 200 m hide the farther places, each more than the one before.
+  const MadeTerrain hills(45, 5, 0.2, [](double, double north_deg) {
+    return 100 + (north_deg > 0.115 && north_deg < 0.125   ? 5
+                  : north_deg > 0.145 && north_deg < 0.155 ? 200
+                                                           : 0);
+  });
+  const auto scenario = mastOf(PropagationModel::diffraction, 10);
+  const auto lossAt = [&](double latitude_deg) {
+    return budgetTo(scenario, hills, latitude_deg, 102).excess.loss_db;
+  };
+  for (const double latitude_deg : {45.018, 45.03, 45.06}) {
+    scenario->ground.terminal_clutter = TerminalClutterModel::none;
+    const double by_terrain_db = lossAt(latitude_deg);
+    scenario->ground.terminal_clutter = TerminalClutterModel::p2108;
+    scenario->ground.terminal_clutter_combine = propagation::ClutterCombination::sum;
+    const double clutter_db = lossOf(1, (latitude_deg - 45) * 111.1e3, 50);
+    EXPECT_NEAR(lossAt(latitude_deg), by_terrain_db + clutter_db, 0.02);
+    scenario->ground.terminal_clutter_combine = propagation::ClutterCombination::larger;
+    EXPECT_NEAR(lossAt(latitude_deg), std::max(by_terrain_db, clutter_db), 0.02);
   }
 }
 
@@ -178,6 +206,9 @@ TEST(ClutterText, NamesWhatTheLossesInclude) {
   scenario->ground.terminal_clutter = TerminalClutterModel::p2108;
   EXPECT_THAT(clutterText(*scenario),
               HasSubstr("P.2108-1 (3.2) at receivers up to 10 m above the ground, 50 %"));
+  scenario->ground.terminal_clutter_combine = propagation::ClutterCombination::larger;
+  EXPECT_THAT(clutterText(*scenario),
+              HasSubstr("50 % of locations, or the loss by terrain if that is larger"));
   EXPECT_THAT(clutterWarnings(*scenario, emitter), IsEmpty());
   emitter.frequency_hz = 100e6;
   EXPECT_EQ(clutterText(*scenario), "none");

@@ -191,6 +191,12 @@ constexpr auto namesOf(ClutterEnds) {
   return std::array{"receiver", "both"};
 }
 
+/// How the loss at the ends joins a model's.
+enum class ClutterCombination { sum, larger };
+constexpr auto namesOf(ClutterCombination) {
+  return std::array{"sum", "larger"};
+}
+
 /// The ground: its electrical properties, and what stands on it.
 struct Ground {
   GroundKind kind = GroundKind::average_ground;
@@ -205,6 +211,7 @@ struct Ground {
   double terminal_clutter_percent = 50;  ///< of locations in which the loss is not exceeded
   double terminal_clutter_below_m = 10;  ///< ends up to this height above the ground are within the clutter
   ClutterEnds terminal_clutter_ends = ClutterEnds::receiver;
+  ClutterCombination terminal_clutter_combine = ClutterCombination::sum;
   SourceLocation location;
 };
 
