@@ -332,7 +332,6 @@ MeasuredCheck checkMeasuredPaths(const std::string& file, const scenario::Scenar
                     [&](const PathCondition& c) { return isOfPath(c) || holdsInTable(table, row, c); });
     if (holds) rows.push_back(readRow(values, row));
   }
-  check.selected = static_cast<int>(rows.size());
   rows = groupsOf(rows, options.group_deg);
   const auto requirePaths = [&](bool any) {
     if (!any) throw Error(ErrorCode::bad_input, {file, 0, 0}, "no row meets the conditions of --where");
@@ -358,7 +357,9 @@ MeasuredCheck checkMeasuredPaths(const std::string& file, const scenario::Scenar
           return !isOfPath(c) ||
                  holdsBetween(c.name == "distance_m" ? path.distance_m : path.elevation_deg, c);
         });
-    if (holds) check.paths.push_back(std::move(path));
+    if (!holds) continue;
+    check.selected += path.rows;
+    check.paths.push_back(std::move(path));
   }
   requirePaths(!check.paths.empty());
 

@@ -76,7 +76,7 @@ std::string familyOf(const ReferenceDataset& dataset) {
   return fs::path(dataset.name).parent_path().string();
 }
 
-/// @param only  a family; empty: all datasets
+/// @param only  a family or a dataset; empty: all datasets
 ReferenceFolder lookBelow(const fs::path& root, const std::string& only) {
   ReferenceFolder found;
   found.root = root;
@@ -84,7 +84,7 @@ ReferenceFolder lookBelow(const fs::path& root, const std::string& only) {
   std::set<std::string> families;  // that exist
   for (const ReferenceDataset& dataset : referenceDatasets()) {
     const std::string family = familyOf(dataset);
-    if (!only.empty() && family != only) continue;
+    if (!only.empty() && family != only && dataset.name != only) continue;
     known.insert(dataset.name);
     if (!family.empty()) known.insert(family);
     if (!family.empty() && fs::is_directory(root / family)) families.insert(family);
@@ -123,7 +123,7 @@ ReferenceFolder findDatasets(const fs::path& folder) {
   const fs::path whole = fs::canonical(folder);
   const std::string family = whole.filename().string();
   for (const ReferenceDataset& dataset : referenceDatasets()) {
-    if (familyOf(dataset) != family || family.empty()) continue;
+    if (family.empty() || (familyOf(dataset) != family && dataset.name != family)) continue;
     found = lookBelow(whole.parent_path(), family);
     if (!found.present.empty()) return found;
   }

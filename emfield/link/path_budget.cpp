@@ -271,6 +271,18 @@ std::vector<BudgetTerm> termsOf(const scenario::Snapshot& snapshot, int emitter_
                      quantityOf(Quantity::mean_power_density_dbwm2, scenario, emitter_index, level_db),
                      "dBW/m2", fmt::format("duty cycle {:.4g} %", 100 * emitter.dutyCycle()), Kind::sum});
   }
+  const std::vector<std::string>& wanted = scenario.output.quantities;
+  if (std::find(wanted.begin(), wanted.end(), scenario::info(Quantity::exposure_ratio).name) !=
+      wanted.end()) {
+    const double level_wm2 =
+        scenario::referenceLevel_wm2(scenario.output.exposure_group, emitter.frequency_hz).value_or(HUGE_VAL);
+    terms.push_back(
+        {"exposure_ratio", "mean power density over the reference level",
+         dbToRatio(level_db) * emitter.dutyCycle() / level_wm2, "",
+         fmt::format("{:g} W/m2 at {}, ICNIRP 2020, {}", level_wm2, quantityText(emitter.frequency_hz, "Hz"),
+                     toString(scenario.output.exposure_group)),
+         Kind::sum});
+  }
   if (!scenario.receivers.empty()) addReceiverTerms(scenario, emitter_index, level_db, terms);
   if (radar) addRadarTerms(scenario, emitter_index, *radar, terms);
 

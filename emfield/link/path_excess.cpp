@@ -85,19 +85,25 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
     excess.add("clutter", "trees and buildings along the path", excess.clutter_db);
     excess.why = all.why;
   });
-  if (propagation::hasAirLoss(inputs.emitter)) {
-    std::vector<float> tables;
-    addAir(propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), tables), profile, excess);
-  }
   const propagation::TerminalClutter terminal = terminalClutter(scenario, emitter, station, terrain);
   const auto end_agl_m = static_cast<float>(profile.end.height_msl_m) - profile.ground_msl_m.back();
   if (const int ends = terminal.ends(static_cast<float>(profile.range_m), end_agl_m); ends > 0) {
-    const auto loss_db = static_cast<double>(terminal.lossDb(static_cast<float>(profile.range_m), end_agl_m));
+    const auto bare_db = static_cast<float>(excess.loss_db);
+    const double loss_db =
+        terminal.is_larger
+            ? static_cast<double>(
+                  terminal.withLossDb(bare_db, static_cast<float>(profile.range_m), end_agl_m) - bare_db)
+            : static_cast<double>(terminal.lossDb(static_cast<float>(profile.range_m), end_agl_m));
     excess.add("terminal_clutter",
-               fmt::format("clutter around {} (P.2108-1, {:g} % of locations)",
-                           ends > 1 ? "both ends" : "one end", scenario.ground.terminal_clutter_percent),
+               fmt::format("clutter around {} (P.2108-1, {:g} % of locations{})",
+                           ends > 1 ? "both ends" : "one end", scenario.ground.terminal_clutter_percent,
+                           terminal.is_larger ? ", what it has more than the terrain" : ""),
                loss_db);
     excess.clutter_db += loss_db;
+  }
+  if (propagation::hasAirLoss(inputs.emitter)) {
+    std::vector<float> tables;
+    addAir(propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), tables), profile, excess);
   }
   if (model.on_smooth_surface && profile.end.height_msl_m < inputs.surface_msl_m) {
     excess.warnings.push_back(fmt::format(
@@ -107,6 +113,13 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
         emitter.name, inputs.surface_msl_m - profile.end.height_msl_m, model.name, inputs.surface_msl_m));
   }
   for (std::string& warning : pathWarnings(emitter, inputs, path.warnings()))
+    excess.warnings.push_back(std::move(warning));
+  const auto groundAt_m = [&](float ground_msl_m) {
+    return model.on_smooth_surface ? inputs.surface_msl_m : static_cast<double>(ground_msl_m);
+  };
+  for (std::string& warning :
+       lowEndWarnings(emitter, profile.begin.height_msl_m - groundAt_m(profile.ground_msl_m.front()),
+                      profile.end.height_msl_m - groundAt_m(profile.ground_msl_m.back())))
     excess.warnings.push_back(std::move(warning));
   return excess;
 }

@@ -25,8 +25,16 @@ std::string distanceText(double distance_m) {
 }
 
 std::string thingAt(const PathObstacle& obstacle) {
-  return fmt::format("{} at {}", obstacle.is_earth_bulge ? "the earth's bulge" : "the terrain",
-                     distanceText(obstacle.range_m));
+  constexpr double kSea_m = 0.5;
+  const char* const thing = obstacle.is_earth_bulge                     ? "the earth's bulge"
+                            : std::abs(obstacle.ground_msl_m) <= kSea_m ? "the surface"
+                                                                        : "the terrain";
+  return fmt::format("{} at {}", thing, distanceText(obstacle.range_m));
+}
+
+/// Whether a model has no obstacles: what is above the ray costs nothing, or only as a smooth earth.
+bool ignoresObstacles(propagation::PropagationModel model) {
+  return model == propagation::PropagationModel::free_space;
 }
 
 /// The path's loss, as a phrase after "and".
@@ -50,9 +58,11 @@ std::string pathText(const PathBudget& budget) {
   const std::string company = others > 0 ? fmt::format(", {} more above it", others) : "";
   if (radii < 0) {
     return fmt::format("{}: {} is {:.0f} m above the ray ({:.1f} Fresnel radii){}, {} {}",
-                       loss_db < 0 ? "Beyond the line of sight" : "Blocked", thingAt(*decisive),
-                       -decisive->clearance_m, -radii, company, loss_db < 0 ? "yet" : "and",
-                       costText(loss_db));
+                       ignoresObstacles(budget.model) ? "Not in sight, which 'free_space' ignores"
+                       : loss_db < 0                  ? "Beyond the line of sight"
+                                                      : "Blocked",
+                       thingAt(*decisive), -decisive->clearance_m, -radii, company,
+                       loss_db < 0 || ignoresObstacles(budget.model) ? "yet" : "and", costText(loss_db));
   }
   if (radii < kFree_radii) {
     return fmt::format(
@@ -117,7 +127,9 @@ std::string detectionText(const PathBudget& budget) {
   if (!std::isfinite(snr_db)) return "; a target there gives no echo";
   std::string ratios = fmt::format("SNR {:.1f} dB", snr_db);
   const BudgetTerm* with_clutter = budget.find("sclnr_db");
-  if (with_clutter != nullptr && with_clutter->value < snr_db - 0.5)
+  if (with_clutter != nullptr && std::isinf(with_clutter->value))
+    ratios += ", none after the filter";
+  else if (with_clutter != nullptr && with_clutter->value < snr_db - 0.5)
     ratios += fmt::format(", with clutter {:.1f} dB", with_clutter->value);
   const BudgetTerm* jamming = budget.find("jammer_to_signal_db");
   if (jamming != nullptr && jamming->value > kWorthSaying_db)

@@ -18,7 +18,7 @@ struct Key {
   bool is_expert = false;
 };
 
-constexpr std::array<Key, 62> kKeys{{
+constexpr std::array<Key, 66> kKeys{{
     {"beamwidth_az_deg", "beamwidth, azimuth"},
     {"beamwidth_el_deg", "beamwidth, elevation"},
     {"side_lobe_db", "side lobes"},
@@ -53,6 +53,9 @@ constexpr std::array<Key, 62> kKeys{{
     {"surface_spread_m_s", "spread of land and sea", true},
     {"rain_spread_m_s", "spread of rain", true},
     {"active_s", "active times"},
+    {"blink", "on and off by turns"},
+    {"on_s", "on"},
+    {"off_s", "off"},
     {"height_msl_m", "height above sea"},
     {"height_agl_m", "height above ground"},
     {"height_ellipsoid_m", "height above ellipsoid"},
@@ -66,6 +69,7 @@ constexpr std::array<Key, 62> kKeys{{
     {"floor", "lowest stored value", true},
     {"count_threshold_dbwm2", "counted from", true},
     {"detection_threshold", "", true},
+    {"exposure_group", "exposure of"},
     {"k_factor", "earth radius factor k"},
     {"vapour_g_m3", "water vapour"},
     {"rain_mm_h", "rain rate"},
@@ -87,7 +91,7 @@ struct Choice {
   const char *key, *choice, *title;
 };
 
-constexpr std::array<Choice, 24> kChoices{{
+constexpr std::array<Choice, 26> kChoices{{
     {"pattern", "isotropic", "isotropic: the same in all directions"},
     {"pattern", "gaussian", "Gaussian beam"},
     {"pattern", "sinc", "uniform aperture: sin x / x"},
@@ -107,6 +111,8 @@ constexpr std::array<Choice, 24> kChoices{{
     {"combine", "per_band", "each band alone"},
     {"radar_look", "scan", "where the scan points"},
     {"radar_look", "target", "at the targets"},
+    {"exposure_group", "general_public", "the general public"},
+    {"exposure_group", "occupational", "workers"},
     {"kind", "pulse_doppler", "pulse Doppler"},
     {"kind", "max_hold", "maximum over the interval"},
     {"kind", "mean", "mean over the interval"},

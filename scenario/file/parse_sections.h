@@ -67,6 +67,8 @@ void warnOfRefractivity(const Scenario& scenario, const Section& root, ParseCont
 /// @return none if faulty, or without a waveform
 std::optional<Clutter> parseClutter(const Section& section, const Emitter& radar, ParseContext& context);
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
+/// Cuts the times at which an emitter is active into those of its blinking.
+void blink(Emitter& emitter, const Section& section, const Clock& clock, ParseContext& context);
 
 /// Sets the noise temperature of an antenna if its receiver requests that of the sky (antenna_noise).
 /// @param section       of the receiver

@@ -229,6 +229,8 @@ propagation::Ground parseGround(const Section& section) {
   ground.terminal_clutter_percent = section.number("terminal_clutter_percent");
   ground.terminal_clutter_below_m = section.number("terminal_clutter_below_m");
   ground.terminal_clutter_ends = section.choice<propagation::ClutterEnds>("terminal_clutter_ends");
+  ground.terminal_clutter_combine =
+      section.choice<propagation::ClutterCombination>("terminal_clutter_combine");
   ground.location = section.location();
   return ground;
 }
@@ -288,6 +290,7 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
   const bool has_unknown_name =
       output.receiver < 0 || (section.has("wanted_emitter") && output.wanted_emitter < 0);
   output.detection_threshold = section.number("detection_threshold");
+  output.exposure_group = section.choice<ExposureGroup>("exposure_group");
   const auto hasKind = [&](EmitterKind kind) {
     return std::any_of(scenario.emitters.begin(), scenario.emitters.end(),
                        [kind](const Emitter& emitter) { return emitter.kind == kind; });
@@ -342,6 +345,7 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
     scenario.platforms.push_back(parsePlatform(item, context));
   for (const Section& item : root.sections("emitters")) {
     scenario.emitters.push_back(parseEmitter(item, scenario.platforms, context));
+    if (item.has("blink")) blink(scenario.emitters.back(), item.section("blink"), scenario.clock, context);
   }
   for (const Section& item : root.sections("receivers")) {
     if (item.has("platform")) {

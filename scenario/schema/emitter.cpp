@@ -132,6 +132,20 @@ const ObjectSpec& clutterSpec() {
   return spec;
 }
 
+const ObjectSpec& blinkSpec() {
+  const ValueSpec span = number("s").above(0).to(1e7);
+  static const ObjectSpec spec{
+      "blink",
+      "",
+      {
+          required("on_s", span, "time for which it radiates"),
+          required("off_s", span, "time between"),
+          byDefault("begin_s", kTime, 0.0,
+                    "a time at which it begins to radiate: jammers that take turns differ in it"),
+      }};
+  return spec;
+}
+
 }  // namespace
 
 const ObjectSpec& emitterSpec() {
@@ -164,6 +178,9 @@ const ObjectSpec& emitterSpec() {
                        {"radar"}),
               optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMaxItems),
                        "[begin, end) of the times at which it radiates; always by default"),
+              optional(
+                  "blink", object(blinkSpec()),
+                  "on and off by turns, within active_s, to the end of the scenario; at most 10000 times"),
           }),
       {},
       {{"clutter", "waveform"}}};

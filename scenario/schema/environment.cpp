@@ -201,6 +201,10 @@ const ObjectSpec& groundSpec() {
               "terminal_clutter_ends", choiceOf<propagation::ClutterEnds>(),
               toString(Ground{}.terminal_clutter_ends),
               "receiver: the far ends of paths (receivers, targets, voxels); both: the emitters' as well"),
+          byDefault(
+              "terminal_clutter_combine", choiceOf<propagation::ClutterCombination>(),
+              toString(Ground{}.terminal_clutter_combine),
+              "with the excess loss of the model, without gases and rain: their sum, or the larger of both"),
       }};
   return spec;
 }

@@ -98,6 +98,17 @@ TEST_F(CheckFolder, ListsPresentAbsentAndUnknownDatasets) {
   EXPECT_THAT(found.unknown, testing::ElementsAre("p9999", "radar/mystery.csv"));
 }
 
+TEST_F(CheckFolder, TakesTheFolderOfOneDatasetOrOfAFamily) {
+  write("geoid/check_points.csv", "");
+  write("radar/clutter_worked_examples.csv", "");
+  const ReferenceFolder geoid = findDatasets(root_ / "geoid"), radar = findDatasets(root_ / "radar");
+  ASSERT_EQ(geoid.present.size(), 1u);
+  EXPECT_EQ(geoid.present[0]->name, "geoid");
+  EXPECT_THAT(geoid.unknown, testing::IsEmpty());
+  ASSERT_EQ(radar.present.size(), 1u);
+  EXPECT_EQ(radar.present[0]->name, "radar/clutter_worked_examples.csv");
+}
+
 TEST_F(CheckFolder, RefusesAFolderWithoutDatasets) {
   EXPECT_THAT(test::errorOf([this] { findDatasets(root_.path()); }, ErrorCode::bad_input),
               HasSubstr("has no known dataset"));

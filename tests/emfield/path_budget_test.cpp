@@ -1,6 +1,7 @@
 // The budget of a path against the field's voxels and against closed forms.
 #include "emscape/emfield/link/path_budget.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 
 #include "emfield/columns/station.h"
 #include "emfield/ground/ground_posts.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "tests/emfield/random_profile.h"
 #include "tests/emfield/test_scenario.h"
@@ -339,6 +341,31 @@ TEST(PathBudget, RefusesPathsOverMissingTerrainAndOfNoLength) {
   EXPECT_THAT(refusal({{46, -71.47, 2000}, 2000}), HasSubstr("terrain is missing on the path, "));
   EXPECT_THAT(refusal({{kSite.latitude_deg, kSite.longitude_deg, 2000}, 2000}),
               HasSubstr("km long over the ground"));
+}
+
+TEST(PathBudget, WarnsOfEndsBelowTheLowestHeightOfTheModel) {
+  for (const auto& [model, lowest_m] : {std::pair{PropagationModel::diffraction, 1.0},
+                                        {PropagationModel::itm, 0.5},
+                                        {PropagationModel::p1812, 1.0},
+                                        {PropagationModel::p452, 1.0},
+                                        {PropagationModel::two_ray, 1.0},
+                                        {PropagationModel::p528, 1.5}}) {
+    auto scenario = emptyScenario(FrameKind::altitude, 44.4, -71.5, {40e3, 40e3, 4000}, {50, 50, 40});
+    scenario::Emitter emitter = plainEmitter("site", 0);
+    emitter.propagation.model = model;
+    addEmitter(*scenario, {44.4, -71.5, geoidUndulation_m(44.4, -71.5) + 20}, emitter);
+    const auto warningsAt = [&](double height_m) {
+      const PathEnd end{{44.5, -71.5, geoidUndulation_m(44.5, -71.5) + height_m}, height_m};
+      std::string all;
+      for (const std::string& warning :
+           pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0, end, model, nullptr).warnings)
+        all += warning + "\n";
+      return all;
+    };
+    EXPECT_THAT(warningsAt(lowest_m - 0.2), HasSubstr("the point is ")) << toString(model);
+    EXPECT_THAT(warningsAt(lowest_m - 0.2), HasSubstr(fmt::format("takes it as {:g} m high", lowest_m)));
+    EXPECT_THAT(warningsAt(lowest_m + 0.2), ::testing::Not(HasSubstr("takes it as"))) << toString(model);
+  }
 }
 
 }  // namespace

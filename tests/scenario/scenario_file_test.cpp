@@ -1,5 +1,6 @@
 #include "emscape/scenario/file/scenario_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -321,6 +322,65 @@ TEST(ScenarioWarnings, NameWhatIsOutsideOfTheTimesOfTheScenario) {
       warningsOf({{"emitters.radar.active_s", "[[10, 20]]"}}),
       HasSubstr("emitter 'radar' is active from 10 s, but the scenario ends at 4 s: it never transmits"));
   EXPECT_THAT(warningsOf({{"emitters.radar.active_s", "[[2, 20]]"}}), Not(HasSubstr("never transmits")));
+}
+
+TEST(Blinking, IsOnAndOffByTurnsWithinTheActiveTimes) {
+  const auto activeTimes = [](std::vector<Edit> edits) {
+    edits.push_back({"duration_s", "60"});
+    const ParseResult result = parseScenario(test::shippedScenario("quick.yaml"), edits);
+    std::string all;
+    if (!result.scenario) return result.problems.front().message;
+    for (const TimeInterval& time : result.scenario->emitters[1].active_s)
+      all += fmt::format("{:g}-{:g} ", time.begin_s, time.end_s);
+    return all;
+  };
+  const std::string key = "emitters.transmitter.blink";
+  EXPECT_EQ(activeTimes({{key, "{on_s: 10, off_s: 20}"}}), "0-10 30-40 60-61 ");
+  EXPECT_EQ(activeTimes({{key, "{on_s: 10, off_s: 20, begin_s: 15}"}}), "15-25 45-55 ");
+  EXPECT_EQ(activeTimes({{key, "{on_s: 10, off_s: 20, begin_s: 5}"},
+                         {"emitters.transmitter.active_s", "[[8, 20], [40, 100]]"}}),
+            "8-15 40-45 ");
+  EXPECT_THAT(activeTimes({{key, "{on_s: 0.001, off_s: 0.001}"}}),
+              HasSubstr("'transmitter' blinks 30000 times in the 60 s of the scenario, at most 10000"));
+}
+
+TEST(ScenarioWarnings, NameAFilterThatRemovesAllClutter) {
+  const auto warningsOf = [](const std::string& mti) {
+    std::string all;
+    for (const Problem& problem :
+         parseScenario(test::shippedScenario("clutter.yaml"), {{"emitters.search radar.clutter.mti", mti}})
+             .problems)
+      all += problem.message + "\n";
+    return all;
+  };
+  EXPECT_THAT(
+      warningsOf("{kind: canceller, pulses: 2}"),
+      HasSubstr("radar 'search radar': the filter removes all clutter of the surface and of rain, since "
+                "neither its spread ('surface_spread_m_s' and 'rain_spread_m_s') nor a limit of the "
+                "radar ('improvement_limit_db') is given"));
+  EXPECT_THAT(warningsOf("{kind: canceller, pulses: 2, surface_spread_m_s: 0.4}"),
+              HasSubstr("removes all clutter of rain, since neither its spread ('rain_spread_m_s')"));
+  EXPECT_THAT(warningsOf("{kind: canceller, pulses: 2, improvement_limit_db: 50}"),
+              Not(HasSubstr("removes all clutter")));
+}
+
+TEST(ScenarioWarnings, NameTheSpreadOfClutterByAMovingRadar) {
+  const auto warningsWith = [](const std::string& spread) {
+    const std::string position = "latitude_deg: 36.3, longitude_deg: -84.25, height_msl_m: 3000";
+    const std::string track =
+        "{points: [{t_s: 0, " + position +
+        "}, {t_s: 100, latitude_deg: 36.48, longitude_deg: -84.25, height_msl_m: 3000}]}";
+    const ParseResult result =
+        parseScenario(test::shippedScenario("clutter.yaml"),
+                      {{"platforms.ridge site.position", "null"},
+                       {"platforms.ridge site.track", track},
+                       {"emitters.search radar.clutter.mti.surface_spread_m_s", spread}});
+    std::string all;
+    for (const Problem& problem : result.problems) all += problem.message + "\n";
+    return all;
+  };
+  EXPECT_THAT(warningsWith("0.4"), HasSubstr("radar 'search radar' moves at up to 200 m/s"));
+  EXPECT_THAT(warningsWith("20"), Not(HasSubstr("moves at up to")));
 }
 
 TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
