@@ -109,7 +109,7 @@ TEST(SweptAntennas, SLOW_EqualNarrowBeamsInSmallSteps) {
   expectAsInSteps(makePhasedArray(45, 400, 400, 0.5, 1, -50), dwells);
 }
 
-TEST(SweptAntennas, EqualWholeTurnsOfNarrowBeamsInSmallSteps) {
+TEST(SweptAntennas, SLOW_EqualWholeTurnsOfNarrowBeamsInSmallSteps) {
   ScanSweep turns;
   turns.arcs = {{0, 360, 2.345, 1, 1}};
   for (const double width_deg : {0.3, 0.1})
