@@ -29,9 +29,14 @@ struct ClearAirExcess {
   ClearAirGround ground;
   float tx_msl_m = 0;
 
-  /// On the CPU, by vector instructions.
+  /// On the CPU, by vector instructions: fillColumn(), compiled for several processors.
   /// @accuracy heights between evaluations: 99 % within 0.1 dB of the model
   unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db) const;
+  unsigned fillColumn(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db) const {
+    const unsigned warnings = begin(column, scratch, excess_db);
+    if (warnings != 0) return warnings;
+    return fill(column, scratch, {0, column.count, scratch.other_db}, excess_db);
+  }
   // The same on a device.
   EMSCAPE_HD unsigned begin(const ExcessColumn& column, const ExcessScratch& scratch,
                             float* excess_db) const {
