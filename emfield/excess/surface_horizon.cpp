@@ -41,7 +41,7 @@ EMSCAPE_SIMD_CLONES void setSlopeBounds(const ObstacleTerms& obstacles, const Se
     float highest[kBlocks], lowest[kBlocks];
     std::fill_n(highest, kBlocks, -HUGE_VALF);
     std::fill_n(lowest, kBlocks, -HUGE_VALF);
-    const float* const slack_m = terrain.slack_m() + first_block;
+    const float* const slack_m = terrain.acrossSlack_m() + first_block;
     for (int j = 0; j < kPosts; ++j) {
       const int first = first_block * kPosts + j * kBlocks;
       const float* const height_msl_m = terrain.height_msl_m() + first;

@@ -184,14 +184,15 @@ class GeoJson : public MapCollection {
     }
   }
 
-  /// A ring without a step of a turn. @param near_deg  longitude within half a turn of its first point
-  Ring ringOf(OGRGeometryH outline, std::optional<double> near_deg) const {
+  /// A ring without a step of a turn. @param near_deg  longitude within half a turn of its first point; NaN:
+  /// any
+  Ring ringOf(OGRGeometryH outline, double near_deg) const {
     Ring ring;
     for (int n = 0; n < OGR_G_GetPointCount(outline); ++n) {
       double x = OGR_G_GetX(outline, n), y = OGR_G_GetY(outline, n);
       OCTTransform(to_earth_.get(), 1, &x, &y, nullptr);
       if (!ring.empty()) near_deg = ring.back()[0];
-      if (near_deg) x = *near_deg + wrapLongitude_deg(x - *near_deg);
+      if (!std::isnan(near_deg)) x = near_deg + wrapLongitude_deg(x - near_deg);
       ring.push_back({x, y});
     }
     return ring;
@@ -202,7 +203,7 @@ class GeoJson : public MapCollection {
       OGRGeometryH polygon = OGR_G_GetGeometryRef(shape, p);
       std::vector<Ring> rings;
       for (int n = 0; n < OGR_G_GetGeometryCount(polygon); ++n) {
-        const auto near_deg = n == 0 ? std::nullopt : std::optional(rings.front().front()[0]);
+        const double near_deg = n == 0 || rings.front().empty() ? std::nan("") : rings.front().front()[0];
         rings.push_back(ringOf(OGR_G_GetGeometryRef(polygon, n), near_deg));
       }
       for (const std::vector<Ring>& part : withinOneTurn(rings)) polygons.push_back(polygonJson(part));
