@@ -62,19 +62,34 @@ emfield::IntervalBeam beamOf(const Scenario& scenario, const Emitter& emitter, d
   return emfield::intervalBeam(scenario, emitter, {}, t_s, false, nullptr);
 }
 
+double tiltsOf(const scenario::ScanSweep& sweep) {
+  std::set<double> tilts;
+  for (const scenario::SweptArc& arc : sweep.arcs) tilts.insert(arc.elevation_deg);
+  return double(tilts.size());
+}
+
 /// Entries of the pattern of an interval, times the positions from which each is computed.
-double patternEntries(const Emitter& emitter, const scenario::ScanSweep& sweep) {
+double patternEntries(const Emitter& emitter, const scenario::ScanSweep& sweep, IntervalKind interval) {
   const auto entries = [](double span_deg, double beamwidth_deg, int most) {
     return std::min(span_deg / beamwidth_deg * 16, double(most));
   };
   const double azimuths = entries(360, emitter.antenna->beamwidth_az_deg, scenario::kMaxSweptAzimuths);
   const double elevations = entries(180, emitter.antenna->beamwidth_el_deg, scenario::kMaxSweptAzimuths / 2);
-  std::set<double> tilts;
-  for (const scenario::SweptArc& arc : sweep.arcs) tilts.insert(arc.elevation_deg);
+  const double tilts = tiltsOf(sweep);
   const auto arcs = double(sweep.arcs.size());
-  // Many arcs of a tilt are one convolution.
-  const double convolved = std::min(arcs, double(tilts.size()) * azimuths / 64);
-  return azimuths * elevations * (double(tilts.size() + sweep.dwells.size()) + convolved);
+  // Many arcs of a tilt are one convolution, or runs for the largest values.
+  constexpr double kFewArcs = 128, kRun = 0.2;
+  const double together = interval == IntervalKind::mean ? tilts * azimuths / 64 : arcs * kRun;
+  const double each = arcs > kFewArcs ? std::min(arcs, together) : arcs;
+  return azimuths * elevations * (tilts + double(sweep.dwells.size()) + each);
+}
+
+/// Entries of the tables by which occupancy finds how far a pattern reaches, one table for each tilt.
+double reachEntries(const Emitter& emitter, const scenario::ScanSweep& sweep) {
+  const auto entries = [](double beamwidth_deg) { return 180 / std::clamp(beamwidth_deg / 8, 0.1, 0.5); };
+  if (emfield::stays(sweep)) return 0;
+  return 2 * tiltsOf(sweep) * entries(emitter.antenna->beamwidth_az_deg) *
+         entries(emitter.antenna->beamwidth_el_deg);
 }
 
 /// Positions of a beam that occupancy tries at a voxel, on average over some ranges: those from which it may
@@ -159,11 +174,15 @@ WorkTime workTimeOf(const Scenario& scenario, const scenario::Terrain* terrain,
       const std::vector<int>& members = plan.channels[c].emitters;
       if (std::find(members.begin(), members.end(), static_cast<int>(e)) == members.end()) continue;
       has_power |= plan.channel_plans[c].reducesPower();
+      if (plan.channel_plans[c].occupancy_threshold_wm2 > 0)
+        patterns_ns += kPatternEntry_ns * reachEntries(emitter, beam->of_sweep);
       sums_ns += voxel_ns(plan, c, static_cast<int>(e), beam) * voxels * steps;
     }
     if (beam && has_power && !emfield::stays(beam->of_sweep)) {
       const bool is_the_same = steps > 1 && beamOf(scenario, emitter, times_s[1]).of_sweep == beam->of_sweep;
-      patterns_ns += kPatternEntry_ns * patternEntries(emitter, beam->of_sweep) * (is_the_same ? 1 : steps);
+      patterns_ns += kPatternEntry_ns *
+                     patternEntries(emitter, beam->of_sweep, scenario.output.interval.kind) *
+                     (is_the_same ? 1 : steps);
     }
   }
   sums_ns += kProduct_ns * voxels * double(plan.channels.size()) * steps;

@@ -82,20 +82,15 @@ int merge(const study::LoadedStudy& loaded, const study::StudyFolder& folder, bo
   return 0;
 }
 
-/// Computes the parts whose numbers are read from standard input. The parent process reports that it was
-/// stopped.
+/// Computes the parts whose numbers are read from standard input.
 int work(const study::LoadedStudy& loaded, const study::StudyFolder& folder, const GlobalOptions& global) {
-  try {
-    const auto isComplete = [](int part) {
-      print("{}\n", part);
-      finishResult();
-    };
-    study::PartComputer(loaded, folder, global.backend)
-        .serve(std::cin, isComplete, [](const std::string&, double) { stopIfInterrupted(); });
-    return 0;
-  } catch (const Stopped&) {
-    return 128 + caughtSignal();
-  }
+  const auto isComplete = [](int part) {
+    print("{}\n", part);
+    finishResult();
+  };
+  study::PartComputer(loaded, folder, global.backend)
+      .serve(std::cin, isComplete, [](const std::string&, double) { stopIfInterrupted(); });
+  return 0;
 }
 
 /// Checks that neither the results nor the scripts replace a file of the study, or a report of another
@@ -206,6 +201,16 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   return merge(loaded, folder, false, global);
 }
 
+/// The process that started a worker reports that both were stopped.
+int runReported(const StudyCommand& command, const GlobalOptions& global) {
+  try {
+    return runStudy(command, global);
+  } catch (const Stopped&) {
+    if (!command.worker) throw;
+    return 128 + caughtSignal();
+  }
+}
+
 }  // namespace
 
 void addStudy(CLI::App& app, const GlobalOptions& global, Action& action) {
@@ -266,7 +271,7 @@ Examples:
   for (CLI::Option* option : {part, resume, merge, slurm}) option->excludes(plan);
   for (CLI::Option* option : {resume, merge, slurm, jobs}) option->excludes(part);
   command->callback(
-      [options, &global, &action] { action = [options, &global] { return runStudy(*options, global); }; });
+      [options, &global, &action] { action = [options, &global] { return runReported(*options, global); }; });
 }
 
 }  // namespace emscape::app
