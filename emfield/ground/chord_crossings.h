@@ -5,8 +5,8 @@
 /// - of each chord in the finest raster without a void on it, if they are not too many
 ///   (GroundPosts::maxCrossings): its beginning and its crossings; of other chords its beginning and the
 ///   regular posts on it,
-/// - among the first chord's crossings the first GroundPosts::near_count regular posts: in the emitter's own
-///   cell a hump between the lines masks a large angle.
+/// - among the crossings of the first chord the first GroundPosts::near_count regular posts: near the emitter
+///   a hump between the lines masks a large angle.
 /// The posts are farther than the emitter and nearer than the receivers: see crossingRange_m().
 #pragma once
 

@@ -33,7 +33,7 @@ struct GroundPosts {
   bool is_smooth = true;  ///< a smooth earth at mean sea level; there is no terrain
   const double* ranges_m = nullptr;
   int range_count = 0;
-  /// For profiles with posts at crossings (chord_crossings.h): number of the posts in the emitter's own cell.
+  /// For profiles with posts at crossings (chord_crossings.h): number of the regular posts near the emitter.
   int near_count = 0;
   /// Chords with more crossings than this have regular posts; see maxCrossings().
   double crossings_per_m = 0;
