@@ -34,6 +34,7 @@ constexpr double kArc_ns = 4;            ///< an arc of looks or passes at a vox
 constexpr double kPosition_ns = 4;       ///< a position of a beam, for occupancy
 constexpr double kProduct_ns = 3;        ///< a channel's value
 constexpr double kPatternEntry_ns = 10;  ///< an entry of the pattern of an interval, per tilt or dwell
+constexpr double kArrayEntry = 3;        ///< times as much for the pattern of a phased array
 
 double metresApart(const GeodeticPosition& a, const GeodeticPosition& b) {
   return length(toEcef(a) - toEcef(b));
@@ -68,27 +69,28 @@ double tiltsOf(const scenario::ScanSweep& sweep) {
   return double(tilts.size());
 }
 
+double entryOf(const Emitter& emitter) {
+  return emitter.antenna->view().kind == scenario::PatternKind::phased_array ? kArrayEntry : 1;
+}
+
 /// Entries of the pattern of an interval, times the positions from which each is computed.
 double patternEntries(const Emitter& emitter, const scenario::ScanSweep& sweep, IntervalKind interval) {
-  const auto entries = [](double span_deg, double beamwidth_deg, int most) {
-    return std::min(span_deg / beamwidth_deg * 16, double(most));
-  };
-  const double azimuths = entries(360, emitter.antenna->beamwidth_az_deg, scenario::kMaxSweptAzimuths);
-  const double elevations = entries(180, emitter.antenna->beamwidth_el_deg, scenario::kMaxSweptAzimuths / 2);
+  const auto [azimuths, elevations, of_row] = scenario::sweptSizeOf(*emitter.antenna, sweep);
   const double tilts = tiltsOf(sweep);
   const auto arcs = double(sweep.arcs.size());
   // Many arcs of a tilt are one convolution, or runs for the largest values.
   constexpr double kFewArcs = 128, kRun = 0.2;
   const double together = interval == IntervalKind::mean ? tilts * azimuths / 64 : arcs * kRun;
   const double each = arcs > kFewArcs ? std::min(arcs, together) : arcs;
-  return azimuths * elevations * (tilts + double(sweep.dwells.size()) + each);
+  const double of_pattern = of_row * tilts + azimuths * double(sweep.dwells.size());
+  return elevations * (entryOf(emitter) * of_pattern + azimuths * each);
 }
 
 /// Entries of the tables by which occupancy finds how far a pattern reaches, one table for each tilt.
 double reachEntries(const Emitter& emitter, const scenario::ScanSweep& sweep) {
   const auto entries = [](double beamwidth_deg) { return 180 / std::clamp(beamwidth_deg / 8, 0.1, 0.5); };
   if (emfield::stays(sweep)) return 0;
-  return 2 * tiltsOf(sweep) * entries(emitter.antenna->beamwidth_az_deg) *
+  return 2 * entryOf(emitter) * tiltsOf(sweep) * entries(emitter.antenna->beamwidth_az_deg) *
          entries(emitter.antenna->beamwidth_el_deg);
 }
 

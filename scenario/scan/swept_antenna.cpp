@@ -362,6 +362,12 @@ AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPat
                                         : gridAntenna(antenna, sweep, pattern);
 }
 
+SweptSize sweptSizeOf(const Antenna& antenna, const ScanSweep& sweep) {
+  const SweptAxes axes = sweptAxes(antenna, sweep);
+  return {double(axes.azimuths.count()), double(axes.elevations.count()),
+          double(rowAzimuths(axes.azimuths, antenna.beamwidth_az_deg).count())};
+}
+
 double lowOnAxis_db(const Antenna& antenna, const ScanSweep& sweep) {
   if (isSameAllRound(sweep, SweptPattern::mean)) return 0;
   const SweptAxes axes = sweptAxes(antenna, sweep);

@@ -25,6 +25,12 @@ enum class SweptPattern {
 /// beam's directions, less where a scan has very many; beyond them 1/8 degree
 AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern);
 
+/// Entries of the table of an interval's pattern, and azimuths from which each of its rows is computed.
+struct SweptSize {
+  double azimuths = 0, elevations = 0, azimuths_of_row = 0;
+};
+SweptSize sweptSizeOf(const Antenna& antenna, const ScanSweep& sweep);
+
 /// How low (dB) a Gaussian beam's value may be on its axis, between two entries of its table: 0.05 dB and
 /// less, more where a scan has so many directions that its table cannot be fine around all of them.
 double lowOnAxis_db(const Antenna& antenna, const ScanSweep& sweep);

@@ -450,7 +450,8 @@ TEST(ClutterWarnings, NameThePartOfTheGroundAtSeaLevelThatIsTakenForLand) {
     for (const std::string& warning : FieldSolver(scenario, coast, {}).warnings()) all += warning + "\n";
     return all;
   };
-  EXPECT_THAT(warnings(), ::testing::ContainsRegex("also the 3[78] % of it that are at or below mean sea level"));
+  EXPECT_THAT(warnings(),
+              ::testing::ContainsRegex("also the 3[78] % of it that are at or below mean sea level"));
   scenario->emitters[0].clutter->sea_state = 2;
   EXPECT_THAT(warnings(), ::testing::Not(::testing::HasSubstr("mean sea level; where")));
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <random>
+#include <type_traits>
 
 #include "emfield/excess/model_check.h"
 #include "emscape/base/error.h"
@@ -64,6 +65,8 @@ class Columns {
         [](const auto& model, const ExcessColumn& column, const ExcessScratch& scratch, float* losses) {
           unsigned all = 0;
           if constexpr (std::decay_t<decltype(model)>::kInParts) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(model)>, propagation::ItmExcess>)
+              all |= model.diffraction(column, scratch, losses);  // on a device by its own kernel
             all |= model.begin(column, scratch, losses);
             float memory_db[kBisectionStep + 1];
             for (int end = column.count; end > 0;) {

@@ -246,8 +246,9 @@ TEST(ParabolicField, DiffractionUsedBehindSteepRidge) {
   scenario->emitters[0].propagation.parabolic_equation.max_angle_deg = 3;
   const auto volume = solve(scenario, terrain);
   for (int i = 66; i < 80; ++i) {  // from 8 km to 12 km, in the shadow
-    for (int j = 0; j < 8; ++j)
-      EXPECT_NEAR(testing::valueAt(*volume, i, j, 1), testing::valueAt(*diffraction, i, j, 1), 0.02);
+    for (int j = 0; j < 8;
+         ++j)  // the equation's profiles have regular posts, those of `diffraction` crossings
+      EXPECT_NEAR(testing::valueAt(*volume, i, j, 1), testing::valueAt(*diffraction, i, j, 1), 0.08);
   }
   scenario->emitters[0].propagation.parabolic_equation.max_angle_deg = 10;
   EXPECT_GT(std::abs(testing::valueAt(*solve(scenario, terrain), 70, 4, 1) -

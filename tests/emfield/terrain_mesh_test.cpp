@@ -73,7 +73,7 @@ TEST(TerrainMeshSpec, LayersWithARatioEndAtTheHighestHeight) {
       HasSubstr("mesh: 40 layers (LAYERS), the first of 5 m (FIRST_M), each 2 times as thick as the "
                 "one below it (RATIO), reach 5.49756e+12 m above ground, outside the allowed range up "
                 "to 100000 m"));
-  EXPECT_THAT(errorAt({4096, 5.0, 3.0}), HasSubstr("reach inf m above ground"));
+  EXPECT_THAT(errorAt({4096, 5.0, 3.0}), HasSubstr("reach an infinite height above ground"));
   EXPECT_EQ(layerHeights_m({10, 1e4, 1.0}, 5000).back(), 100e3);
   EXPECT_EQ(layerHeights_m({20, 1e4, 1.0}, 200e3).back(), 200e3) << "as high as the region";
 }

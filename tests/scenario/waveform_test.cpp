@@ -121,8 +121,9 @@ TEST(Waveform, PulsesThatAreGivenStayAndMoreThanTheHitsAreAWarning) {
 
 /// The warnings about the echoes and pulses of a radar with a Doppler filter, and its integrated pulses.
 std::pair<int, std::string> filtered(const std::string& receiver_keys, const std::string& mti) {
-  const ParseResult result = parsed(
-      receiver_keys, "{prf_hz: 1280, pulse_width_s: 1.0e-6}\n    clutter: {land: woods, mti: " + mti + "}");
+  const ParseResult result =
+      parsed(receiver_keys, "{prf_hz: 1280, pulse_width_s: 1.0e-6}\n    clutter: {land: woods, mti: " +
+                                mti.substr(0, mti.size() - 1) + ", surface_spread_m_s: 0.2}}");
   std::string warnings;
   for (const Problem& problem : result.problems) {
     if (problem.message.find("sweeps") == std::string::npos) warnings += problem.message + "\n";
