@@ -1,5 +1,6 @@
 #include "recording/tracks/table_cells.h"
 
+#include <cctype>
 #include <cmath>
 
 namespace emscape::interop {
@@ -41,6 +42,30 @@ std::string joinedAngle(const std::string& text) {
     if (is_blank && is_before_digit && is_after_digit) joined += ':';
   }
   return joined;
+}
+
+std::optional<double> offsetOf_s(const std::string& cell) {
+  constexpr double kHour_s = 3600, kMinute_s = 60, kMost_h = 14;
+  std::string text;
+  for (const char c : cell) {
+    if (std::isdigit(static_cast<unsigned char>(c)) != 0 || c == ':' || c == '+' || c == '-') text += c;
+  }
+  const bool is_west = !text.empty() && text.front() == '-';
+  if (is_west || (!text.empty() && text.front() == '+')) text.erase(0, 1);
+  const std::size_t colon = text.find(':');
+  if (colon == std::string::npos && text.size() == 4) text.insert(2, ":");
+  const std::size_t middle = text.find(':');
+  const std::string hours = text.substr(0, middle),
+                    minutes = middle < text.size() ? text.substr(middle + 1) : "0";
+  const auto isNumber = [](const std::string& digits) {
+    return !digits.empty() && digits.size() <= 2 &&
+           digits.find_first_not_of("0123456789") == std::string::npos;
+  };
+  if (cell.find_first_of(".,") != std::string::npos || !isNumber(hours) || !isNumber(minutes))
+    return std::nullopt;
+  const double hours_of_day = std::stod(hours) + std::stod(minutes) * kMinute_s / kHour_s;
+  if (hours_of_day > kMost_h || std::stod(minutes) >= kMinute_s) return std::nullopt;
+  return (is_west ? -1 : 1) * hours_of_day * kHour_s;
 }
 
 }  // namespace emscape::interop

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -48,5 +49,8 @@ struct UnusedColumn {
     return texts.size() > 1 && texts.size() < kMaxTexts && 2 * static_cast<long long>(texts.size()) <= rows;
   }
 };
+
+/// Seconds of an offset from UTC as -4, +05:30 or UTC-0400; none: it is not one.
+std::optional<double> offsetOf_s(const std::string& cell);
 
 }  // namespace emscape::interop

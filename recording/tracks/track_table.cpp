@@ -137,7 +137,7 @@ class TableReader {
 
   /// Whole numbers without a unit that are far apart, in which an object creeps, are no seconds.
   void tellLongSteps(ReadingTally& tally) const {
-    constexpr double kLongStep_s = 1000, kCreeping_mps = 0.05, kDegree_m = 111e3;
+    constexpr double kLongStep_s = 3e4, kCreeping_mps = 0.05, kDegree_m = 111e3;
     const double span_s = last_time_ - first_time_;
     if (plain_times_ < 3 || span_s < kLongStep_s * static_cast<double>(plain_times_ - 1) || path_deg_ == 0 ||
         path_deg_ * kDegree_m > kCreeping_mps * span_s)
@@ -284,8 +284,8 @@ class TableReader {
         }
         recorder_.mayBeDays(!column.has_unit);
         if (!column.has_unit && time == std::floor(time)) {
-          if (plain_times_++ == 0) first_time_ = time;
-          last_time_ = time;
+          if (plain_times_++ == 0) first_time_ = secondsOf(time);
+          last_time_ = secondsOf(time);
         }
         if (time > kFirstUnixTime_s) {
           is_utc_ = true;
@@ -297,11 +297,22 @@ class TableReader {
     std::string text = is_compact        ? told->substr(0, 8) + "T" + told->substr(8)
                        : date == nullptr ? *told
                                          : *date + " " + *told;
-    if (const std::string* const offset = cellOf(cells, Column::utc_offset)) text += *offset;
+    double offset_s = 0;
+    if (const std::string* const cell = cellOf(cells, Column::utc_offset);
+        cell != nullptr && cell->find_first_not_of(" ") != std::string::npos && !isUtc(text)) {
+      const std::optional<double> offset = offsetOf_s(*cell);
+      if (!offset)
+        return bad(
+            fmt::format("its offset from UTC '{}' cannot be read; it is one as -04:00, in hours and minutes",
+                        printableText(*cell)));
+      offset_s = *offset;
+      recorder_.assume(fmt::format("times are local: column '{}' gives their offset from UTC",
+                                   printableText(header_[columns_.at(Column::utc_offset).index])));
+    }
     const DateOrder order = date == nullptr ? column.order : columns_.at(Column::date).order;
     if (const auto time_s = utcSeconds(text, order)) {
       is_utc_ = true;
-      return time_s;
+      return *time_s - offset_s;
     }
     if (needsDateOrder(text)) {
       throw Error(
@@ -312,11 +323,22 @@ class TableReader {
               location_, printableText(text), roleOf(date == nullptr ? Column::time : Column::date),
               roleOf(date == nullptr ? Column::time : Column::date)));
     }
-    if (const auto time_s = date == nullptr ? timeOfDay(text) : std::nullopt) return time_s;
+    if (const auto time_s = date == nullptr ? timeOfDay(text) : std::nullopt) return *time_s - offset_s;
     return bad(
         fmt::format("its time '{}' cannot be read; it is one as 2026-06-01T06:00:00Z or "
                     "2026-06-01 08:00:00+02:00, in seconds since 1970 or of the scenario, or hh:mm:ss",
                     printableText(text)));
+  }
+
+  /// True if a time, or the name of its column, says that it is UTC or has its own offset.
+  bool isUtc(const std::string& text) const {
+    const std::string name = header_.empty() ? "" : lowerCase(header_[columns_.at(Column::time).index]);
+    for (const char* const word : {"utc", "gmt", "zulu"}) {
+      if (name.find(word) != std::string::npos) return true;
+    }
+    const std::size_t clock = text.find(':');
+    return text.find_last_of("Zz") != std::string::npos ||
+           (clock != std::string::npos && text.find_first_of("+-", clock) != std::string::npos);
   }
 
   /// hh:mm:ss without a date, as times of a day that is not told, and of the next ones where they fall.
@@ -414,8 +436,7 @@ class TableReader {
       if (!columns_.at(column).has_unit && isOfFlightradar()) {
         recorder_.assume("height without a unit in a table of Flightradar24: taken as feet");
         *height_m *= kMetresPerFoot;
-      } else if (!columns_.at(column).has_unit && options_.columns.find("height") == std::string::npos &&
-                 !isOfOpenSky(column)) {
+      } else if (!columns_.at(column).has_unit && !isOfOpenSky(column)) {
         recorder_.assume(fmt::format(
             "height without a unit in column '{0}': taken as metres; if it is in feet, columns tell it: "
             "{1}={0}:ft",

@@ -250,8 +250,12 @@ class PatternTable {
                       "and name the column gain_db or gain_dbi",
                       value_.title));
     }
-    constexpr double kHighest_db = 50;
-    if (!has_unit && min_db >= 0 && max_db > kHighest_db) {
+    // Averaged over all directions no gain is above 0 dBi.
+    constexpr double kHighest_db = 75, kWhole_deg = 170;
+    const auto by_angle = [](const SphereRow& a, const SphereRow& b) { return a.second_deg < b.second_deg; };
+    const auto [lowest, highest] = std::minmax_element(rows_.begin(), rows_.end(), by_angle);
+    const bool is_whole = highest->second_deg - lowest->second_deg >= kWhole_deg;
+    if (!has_unit && min_db >= 0 && (is_whole || max_db > kHighest_db)) {
       throw Error(
           ErrorCode::bad_input, {text_.file(), 0, 0},
           fmt::format("the values of '{}' have no unit, are never below 0 and reach {:.4g}, as those of "

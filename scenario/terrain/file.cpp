@@ -9,9 +9,11 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "base/files/file_reading.h"
@@ -255,9 +257,12 @@ void TerrainFile::Impl::readHead() {
       band_warning = text + "; `band` of the file in the scenario chooses another";
   }
   checkDatasets(dataset.get(), sources);
-  if (EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(dataset.get())), "AAIGrid") &&
-      source.member.empty()) {
-    if (const std::string fault = faultOfGridRow(source.file, columns); !fault.empty()) fail(fault);
+  if (EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(dataset.get())), "AAIGrid")) {
+    std::ifstream in_folder(source.file, std::ios::binary);
+    std::istringstream in_archive(source.member.empty() ? "" : unpackedContent(source));
+    const std::string fault = faultOfGridLines(
+        source.member.empty() ? static_cast<std::istream&>(in_folder) : in_archive, columns, rows);
+    if (!fault.empty()) fail(fault);
   }
   readBand(dataset.get());
   placePosts(dataset.get());

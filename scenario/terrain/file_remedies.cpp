@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <istream>
 #include <vector>
 
 #include "base/geodesy/gdal_file.h"
@@ -166,26 +167,30 @@ std::string remedyForTileWithoutPosition() {
          "N38E052.hgt";
 }
 
-std::string faultOfGridRow(const std::string& file, int columns) {
-  std::ifstream stream(file, std::ios::binary);
+std::string faultOfGridLines(std::istream& text, long long columns, long long rows) {
   std::string line;
   constexpr int kMaxHeaderLines = 20;
-  for (int n = 0; n < kMaxHeaderLines && std::isalpha((stream >> std::ws).peek()) != 0; ++n) {
-    if (std::getline(stream, line); document::upperCase(line).rfind("NAN", 0) == 0) return "";
+  for (int n = 0; n < kMaxHeaderLines && std::isalpha((text >> std::ws).peek()) != 0; ++n) {
+    if (std::getline(text, line); document::upperCase(line).rfind("NAN", 0) == 0) return "";
   }
   long long values = 0;
   bool is_value = false;
-  for (std::streambuf* const bytes = stream.rdbuf(); bytes->sgetc() != EOF && bytes->sgetc() != '\n';) {
-    const bool is_blank = std::isspace(bytes->sbumpc()) != 0;
-    if (!is_blank && !is_value) ++values;
-    is_value = !is_blank;
-  }
-  // A line may be a part of a row, or several whole rows.
-  if (values <= columns || values % columns == 0) return "";
+  std::streambuf* const bytes = text.rdbuf();
+  const auto countTo = [&](bool whole) {
+    while (bytes->sgetc() != EOF && (whole || bytes->sgetc() != '\n')) {
+      const bool is_blank = std::isspace(bytes->sbumpc()) != 0;
+      if (!is_blank && !is_value) ++values;
+      is_value = !is_blank;
+    }
+    return values;
+  };
+  const long long of_line = countTo(false);
+  // A line may be any part of the rows; that there are too few values GDAL tells.
+  if (of_line == columns || countTo(true) <= columns * rows) return "";
   return fmt::format(
-      "its first row has {} values, but 'ncols' is {}: heights would be at wrong positions. "
-      "Write ncols {} if the file is whole",
-      values, columns, values);
+      "has {} values, {} in its first line, but 'ncols' {} and 'nrows' {} make {}: heights would be at wrong "
+      "positions. Correct 'ncols' and 'nrows', or get the file again",
+      values, of_line, columns, rows, columns * rows);
 }
 
 std::string heightUnitBeside(const std::string& file) {

@@ -1,6 +1,7 @@
 /// What to do with files that are not read as they are. Each remedy is run by a test on its case.
 #pragma once
 
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,8 +27,9 @@ std::string remedyForTileWithoutPosition();
 std::string foreignContent(std::string_view beginning);
 std::string foreignContentOf(const std::string& file);
 
-/// The fault of an ASCII grid whose first row has more values than its header says; empty: none.
-std::string faultOfGridRow(const std::string& file, int columns);
+/// The fault of an ASCII grid with more values than its header says; empty: none.
+/// @param text  of the file. Read as far as its first line, or whole if that has not one row
+std::string faultOfGridLines(std::istream& text, long long columns, long long rows);
 /// The unit of heights that the .prj of ArcInfo beside a raster states ("Zunits FEET"): "ft" or "m"; empty:
 /// none.
 std::string heightUnitBeside(const std::string& file);

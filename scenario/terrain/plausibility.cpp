@@ -95,6 +95,7 @@ void HeightTally::add(const HeightTally& other) {
   highest_m_ = std::max(highest_m_, other.highest_m_);
   posts_ += other.posts_;
   tiny_ += other.tiny_;
+  tiny_heights_ += other.tiny_heights_;
   pairs_ += other.pairs_;
   steps_ += other.steps_;
   step_sum_ += other.step_sum_;
@@ -123,8 +124,19 @@ bool HeightTally::looksSwapped() const {
          step_sum_ > kMinRatio * swapped_step_sum_;
 }
 
+void HeightTally::addReal(float value) {
+  constexpr float kLeastHeight = 1e-3F;
+  if (value == 0 || std::abs(value) >= kLeastReal) return;
+  ++tiny_;
+  const float size = std::abs(withSwappedBytesOfReal(value));
+  if (size >= kLeastHeight && static_cast<double>(size) <= -kLowestOnEarth_m) ++tiny_heights_;
+}
+
 bool HeightTally::looksSwappedReal() const {
-  return static_cast<double>(tiny_) > kMaxShareBeyond * static_cast<double>(posts_);
+  // Numbers that are nearly 0 for another reason become heights by chance only.
+  constexpr double kMinShare = 0.8;
+  return static_cast<double>(tiny_) > kMaxShareBeyond * static_cast<double>(posts_) &&
+         static_cast<double>(tiny_heights_) > kMinShare * static_cast<double>(tiny_);
 }
 
 std::vector<HeightTally::Value> HeightTally::fills() const {

@@ -37,9 +37,7 @@ class HeightTally {
                 std::size_t first, std::size_t count);
   void add(const HeightTally& other);
   /// Counts a real number that no height is, as the other byte order makes of heights: not 0, but nearly.
-  void addReal(float value) {
-    if (value != 0 && std::abs(value) < kLeastReal) ++tiny_;
-  }
+  void addReal(float value);
   /// True if numbers are not heights in metres or any other unit, but such of the other byte order.
   bool looksSwappedReal() const;
 
@@ -61,7 +59,8 @@ class HeightTally {
   static constexpr float kLeastReal = 1e-20F;
   void addBeyond(double height_m, long long posts = 1);
 
-  long long posts_ = 0, beyond_ = 0, tiny_ = 0;
+  long long posts_ = 0, beyond_ = 0;
+  long long tiny_ = 0, tiny_heights_ = 0;  ///< nearly 0; those of them that are heights in the other order
   double lowest_m_ = std::numeric_limits<double>::infinity();
   double highest_m_ = -std::numeric_limits<double>::infinity();
   std::vector<Value> values_;  ///< beyond, different ones; at most one more than fill values

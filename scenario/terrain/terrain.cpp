@@ -252,7 +252,7 @@ class TerrainMosaic : public Terrain {
  private:
   void addSea();
   void addSurface(const TerrainSpec& spec, const GeoBox& box);
-  void requireSurface(const TerrainSpec& spec, const GeoBox& box) const;
+  void requireSurface(const TerrainSpec& spec, const GeoBox& box);
   void survey(const std::vector<TerrainSheet>& sheets);
   void surveyPosts(const TerrainSheet& sheet);
   bool covered(const std::vector<TerrainSheet>& sheets, double latitude_deg, double longitude_deg) const;
@@ -272,39 +272,37 @@ class TerrainMosaic : public Terrain {
   TerrainPtr surface_;
 };
 
-/// Refuses a surface model that is far below or above the ground.
-void TerrainMosaic::requireSurface(const TerrainSpec& spec, const GeoBox& box) const {
+/// Refuses a surface model that is far below or above the ground on average; two models of one ground differ
+/// by some metres.
+void TerrainMosaic::requireSurface(const TerrainSpec& spec, const GeoBox& box) {
   constexpr int kSide = 40;
-  constexpr double kMaxBelow_m = 2, kMaxAbove_m = 100;  // the highest clutter of classes
-  std::vector<double> above_m;
+  constexpr double kMaxBelow_m = 5, kTold_m = 1, kMaxAbove_m = 100;  // the highest clutter of classes
+  double sum_m = 0;
+  int count = 0;
   for (int n = 0; n < kSide * kSide; ++n) {
     const double latitude_deg = box.south_deg + (n / kSide + 0.5) / kSide * (box.north_deg - box.south_deg);
     const double longitude_deg = box.west_deg + (n % kSide + 0.5) / kSide * (box.east_deg - box.west_deg);
     const double difference_m =
         surface_->heightMsl_m(latitude_deg, longitude_deg) - heightMsl_m(latitude_deg, longitude_deg);
-    if (!std::isnan(difference_m)) above_m.push_back(difference_m);
+    if (std::isnan(difference_m)) continue;
+    sum_m += difference_m;
+    ++count;
   }
-  if (above_m.empty()) return;
-  std::nth_element(above_m.begin(), above_m.begin() + static_cast<std::ptrdiff_t>(above_m.size() / 2),
-                   above_m.end());
-  const double median_m = above_m[above_m.size() / 2];
-  const auto countOf = [&](auto&& isOne) { return std::count_if(above_m.begin(), above_m.end(), isOne); };
-  const auto below = countOf([](double difference_m) { return difference_m < -kMaxBelow_m; });
-  const auto above = countOf([](double difference_m) { return difference_m > kMaxBelow_m; });
-  // Errors of heights lie on both sides.
-  const bool is_below = 10 * below > static_cast<long>(above_m.size()) && 4 * above < below;
-  if (!is_below && median_m <= kMaxAbove_m) return;
+  if (count == 0) return;
+  const double mean_m = sum_m / count;
   const std::string found =
-      is_below ? fmt::format("more than {:g} m below the ground ('files') at {:.0f} % of places", kMaxBelow_m,
-                             100.0 * static_cast<double>(below) / static_cast<double>(above_m.size()))
-               : fmt::format("{:.4g} m above the ground ('files') in the median", median_m);
-  throw Error(
-      ErrorCode::bad_input,
-      spec.surface_locations.empty() ? SourceLocation{} : spec.surface_locations.front(),
-      fmt::format("the surface model ('surface_files') is {}: the two are exchanged, or it has heights "
-                  "above the ground, or its unit ('height_unit') or datum ('vertical_datum') is another "
-                  "one",
-                  found));
+      fmt::format("the surface model ('surface_files') is on average {:.1f} m {} the ground ('files')",
+                  std::abs(mean_m), mean_m < 0 ? "below" : "above");
+  if (mean_m < -kMaxBelow_m || mean_m > kMaxAbove_m) {
+    throw Error(
+        ErrorCode::bad_input,
+        spec.surface_locations.empty() ? SourceLocation{} : spec.surface_locations.front(),
+        found +
+            ": the two are exchanged, or it has heights above the ground, or its unit ('height_unit') or "
+            "datum ('vertical_datum') is another one");
+  }
+  if (mean_m < -kTold_m)
+    warnings_.push_back("terrain: " + found + ": trees and buildings come out too low by that");
 }
 
 void TerrainMosaic::addSurface(const TerrainSpec& spec, const GeoBox& box) {

@@ -1,4 +1,5 @@
 // Files as other programs write them.
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -73,6 +74,24 @@ TEST(TablesOfOthers, GarminAvionicsWriteLocalTimesWithTheirOffsetAndUnitsInAComm
              "2026-06-01, 02:00:10, -04:00, -33.449, -70.549, 10100\n");
   EXPECT_EQ(r.epoch_ms, kSix_ms);
   EXPECT_NEAR(r.objects.at(0).poses.at(1).height_msl_m, 10100 * 0.3048, 1e-9);
+}
+
+TEST(TablesOfOthers, OffsetsFromUtcCountForLocalTimesOnly) {
+  const auto epochOf = [](const std::string& titles, const std::string& time, const std::string& offset) {
+    std::string text = titles + ",lat,lon,alt_m\n";
+    for (int n = 0; n < 3; ++n) text += fmt::format("{}:0{}{},52.00{},5,1\n", time, n, offset, n);
+    return readAs("a.csv", text);
+  };
+  for (const char* offset : {",-4", ",-04:00", ",UTC-4", ",-0400"}) {
+    const Recording r = epochOf("time,utc_offset", "2026-06-01 02:00", offset);
+    EXPECT_EQ(r.epoch_ms, kSix_ms) << offset;
+    EXPECT_THAT(r.tally.notes,
+                Contains(HasSubstr("times are local: column 'utc_offset' gives their offset")));
+  }
+  EXPECT_EQ(epochOf("time,utc_offset", "2026-06-01T06:00", "Z,-04:00").epoch_ms, kSix_ms);
+  EXPECT_EQ(epochOf("time,utc_offset", "2026-06-01T02:00", "-04:00,-04:00").epoch_ms, kSix_ms);
+  EXPECT_EQ(epochOf("time_utc,utc_offset", "2026-06-01 06:00", ",-04:00").epoch_ms, kSix_ms);
+  EXPECT_EQ(epochOf("time,utc_offset", "2026-06-01 09:00", ",3").epoch_ms, kSix_ms) << "hours without a sign";
 }
 
 TEST(TablesOfOthers, MicrosecondsTakenAsSecondsAreTold) {

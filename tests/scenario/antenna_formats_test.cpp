@@ -141,6 +141,7 @@ TEST(AntennaTables, ContradictionsAreErrorsAtTheirPlace) {
   expectBroken("theta_deg,phi_deg,attenuation\n0,0,-3\n", 2, 5,
                "attenuations are 0 or above: is it gain_db?");
   expectBroken("theta_deg,phi_deg,gain\n0,0,0.5\n90,0,1\n", 0, 0, "as those of a linear gain");
+  expectBroken("theta_deg,phi_deg,gain\n0,0,30\n90,0,1\n180,0,0.001\n", 0, 0, "as those of a linear gain");
   expectBroken("theta_deg,phi_deg,gain_dbi\n200,0,3\n", 2, 1, "theta_deg is 200 deg");
   expectBroken("freq,theta_deg,phi_deg,gain_dbi\n1,0,0,3\n2,0,0,3\n", 0, 0, "the table has 2 frequencies");
   expectBroken("theta_deg,phi_deg,gain_dbi\n0,0,3\n90,0,3\n0,90,3\n", 0, 0, "the rows are not a full grid");

@@ -229,6 +229,13 @@ TEST_F(TerrainWithCover, RefusesASurfaceModelThatIsNone) {
                 HasSubstr("the surface model ('surface_files') is"))
         << surface_m;
   }
+  test::geographicDem(-84.6, 36.8, 0.01, 80, 80, [](double, double) {
+    return 498.0;
+  }).write(folder_ / "surface.tif");
+  EXPECT_THAT(
+      Terrain::load(spec, kBox)->warnings(),
+      testing::Contains(HasSubstr("on average 2.0 m below the ground ('files'): trees and buildings")))
+      << "models of one ground differ";
 }
 
 TEST(TerrainProfileWithCover, TellsTheSeaAndClutterByItAndByHeightsWhereItIsUnknown) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -106,8 +107,25 @@ TEST_F(ImplausibleTerrain, GridWhoseRowsAreLongerThanItsHeaderSaysIsRefused) {
   };
   TerrainFileKeys keys;
   keys.crs = "EPSG:4326";
-  EXPECT_THAT(problemOf(grid(93), keys), HasSubstr("has 100 values, but 'ncols' is 93"));
-  EXPECT_NEAR(load(grid(100), keys)->heightMsl_m(49.5, 10.505), 150, 0.1) << "as the message says";
+  EXPECT_THAT(problemOf(grid(93), keys),
+              HasSubstr("has 10000 values, 100 in its first line, but 'ncols' 93 and 'nrows' 100 make 9300"));
+  const std::string whole = grid(100);
+  EXPECT_NEAR(load(whole, keys)->heightMsl_m(49.5, 10.505), 150, 0.1);
+  std::string wrapped = test::readFile(whole);
+  std::replace(wrapped.begin() + 90, wrapped.end(), '\n', ' ');
+  for (std::size_t at = 90; at + 600 < wrapped.size(); at += 600) wrapped[wrapped.find(' ', at + 590)] = '\n';
+  const std::string file = folder_.write("b.asc", wrapped);
+  EXPECT_NEAR(load(file, keys)->heightMsl_m(49.5, 10.505), 150, 0.1) << "lines of 150 values";
+  test::writeZip(folder_ / "c.zip", {{"c.asc", grid(93)}});
+  EXPECT_THAT(problemOf(folder_ / "c.zip", keys), HasSubstr("'ncols' 93 and 'nrows' 100 make 9300"));
+}
+
+TEST_F(ImplausibleTerrain, NumbersThatAreNearlyZeroByThemselvesAreHeights) {
+  const std::string file = plain([](int column, int row) {
+    return column < 60 ? 1e-24 * std::exp(-0.1 * column) * (1 + row) : 300.0;  // tails of a filter
+  });
+  EXPECT_EQ(load(file)->heightMsl_m(49.5, 10.75), 300);
+  EXPECT_NEAR(load(file)->heightMsl_m(49.5, 10.3), 0, 1e-6);
 }
 
 TEST_F(ImplausibleTerrain, UnitOfHeightsInAProjectionFileOfArcInfoIsUsed) {
