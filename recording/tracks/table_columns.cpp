@@ -134,6 +134,17 @@ bool isHeight(Column column) {
          column == Column::height_pressure;
 }
 
+/// True if a unit measures what a column holds: "Lat (d)" is in degrees, not in days.
+bool measures(const std::string& told, Column column) {
+  const std::string unit = lowerCase(told).substr(0, told.find(' '));
+  const bool is_angle =
+      unit == "deg" || unit == "degrees" || unit == "degree" || unit == "rad" || unit == "\xC2\xB0";
+  const bool is_length = unit == "fl" || unit == "ft" || unit == "feet" || unit == "m" || unit == "km" ||
+                         unit == "cm" || unit == "mm" || unit.rfind("met", 0) == 0;
+  if (column == Column::time) return !is_angle && !is_length;
+  return isHeight(column) ? is_length : is_angle;
+}
+
 /// A name without its unit and what stands before a dot: "Alt (ft)", "altitude_ft", "alt[m]", "OSD.height
 /// [m]".
 std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
@@ -296,7 +307,9 @@ Columns columnsByMap(const std::vector<std::string>& header, const std::string& 
       continue;
     }
     const std::string unit_in_name = nameAndUnit(name).second;  // "Alt (ft)"
-    if (unit.empty() && unit_in_name != "utc" && factorOfUnit(unit_in_name)) unit = unit_in_name;
+    if (unit.empty() && unit_in_name != "utc" && factorOfUnit(unit_in_name) &&
+        measures(unit_in_name, known->column))
+      unit = unit_in_name;
     if (unit == "gps" && known->column == Column::time) {
       column.begin_s = kGpsBegin_s;
       continue;

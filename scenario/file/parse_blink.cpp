@@ -22,7 +22,7 @@ void blink(Emitter& emitter, const Section& section, const Clock& clock, ParseCo
   std::vector<TimeInterval> active = emitter.active_s;
   if (active.empty()) active.push_back({0, clock.duration_s + clock.step_s});
   emitter.active_s.clear();
-  const double begin_s = section.number("begin_s");
+  const double begin_s = section.has("begin_s") ? section.number("begin_s") : 0;
   for (const TimeInterval& whole : active) {
     const double to_s = std::min(whole.end_s, clock.duration_s + clock.step_s);
     for (double n = std::floor((std::max(whole.begin_s, 0.0) - begin_s) / cycle_s);

@@ -140,8 +140,9 @@ const ObjectSpec& blinkSpec() {
       {
           required("on_s", span, "time for which it radiates"),
           required("off_s", span, "time between"),
-          byDefault("begin_s", kTime, 0.0,
-                    "a time at which it begins to radiate: jammers that take turns differ in it"),
+          optional(
+              "begin_s", kTime,
+              "a time at which it begins to radiate, 0 if not given: jammers that take turns differ in it"),
       }};
   return spec;
 }

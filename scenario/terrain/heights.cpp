@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstring>
@@ -207,6 +208,12 @@ void setDatum(const HeightFacts& facts, const Stated& stated, HeightMeaning& mea
         "-t_srs EPSG:4979 brings them to the ellipsoid where PROJ has the grid of NAVD88");
 }
 
+/// True for m2 s-2 in its spellings: m**2 s**-2, m^2/s^2, ...
+bool isGeopotential(std::string unit) {
+  for (const char c : {'*', '^', ' ', '.'}) unit.erase(std::remove(unit.begin(), unit.end(), c), unit.end());
+  return unit == "m2s-2" || unit == "m2/s2" || unit == "J/kg" || unit == "Jkg-1";
+}
+
 void setUnit(const HeightFacts& facts, const Stated& stated, HeightMeaning& meaning) {
   const std::optional<HeightUnit>& key = facts.keys.height_unit;
   // Some formats write so instead of leaving it out.
@@ -216,7 +223,7 @@ void setUnit(const HeightFacts& facts, const Stated& stated, HeightMeaning& mean
   if (of_band || stated.unit_m > 0) {
     meaning.unit = of_band ? facts.band_unit : stated.unit;
     meaning.unit_m = of_band ? metresNamed(facts.band_unit) : stated.unit_m;
-    if (meaning.unit_m == 0.0 && !key && meaning.unit.find("s**-2") != std::string::npos)
+    if (meaning.unit_m == 0.0 && !key && isGeopotential(meaning.unit))
       refuse(
           fmt::format("is a geopotential ('{}'), not heights: gdal_translate -ot Float32 -a_scale 0.10197162 "
                       "-a_offset 0 {} "

@@ -63,16 +63,20 @@ std::optional<PathCause> causeAt(const scenario::Snapshot& snapshot, scenario::Q
                                  const scenario::Terrain* terrain) {
   const std::vector<scenario::Emitter>& emitters = snapshot.scenario->emitters;
   BestPath best(quantity);
+  bool is_jammed = false;  // one of the radars, which would cover the point without the jammers
   for (std::size_t e = 0; e < emitters.size(); ++e) {
     if (scenario::needsRadar(quantity) && emitters[e].kind != scenario::EmitterKind::radar) continue;
     try {
-      best.add(
-          emfield::pathBudget(snapshot, static_cast<int>(e), end, emitters[e].propagation.model, terrain));
+      PathBudget budget =
+          emfield::pathBudget(snapshot, static_cast<int>(e), end, emitters[e].propagation.model, terrain);
+      is_jammed |= emfield::causeOf(budget, quantity, threshold) == PathCause::jamming;
+      best.add(std::move(budget));
     } catch (const Error&) {  // its ends have no path, or an end is absent
     }
   }
   if (!best.best()) return std::nullopt;
-  return emfield::causeOf(*best.best(), quantity, threshold);
+  const PathCause cause = emfield::causeOf(*best.best(), quantity, threshold);
+  return is_jammed && cause != PathCause::covered ? PathCause::jamming : cause;
 }
 
 std::vector<float> causesOf(const MapGrid& grid, const CoverageRequest& request,

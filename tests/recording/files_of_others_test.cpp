@@ -76,6 +76,14 @@ TEST(TablesOfOthers, GarminAvionicsWriteLocalTimesWithTheirOffsetAndUnitsInAComm
   EXPECT_NEAR(r.objects.at(0).poses.at(1).height_msl_m, 10100 * 0.3048, 1e-9);
 }
 
+TEST(TablesOfOthers, AUnitInANameIsOfTheColumnsKind) {
+  const Recording r = readAs("a.csv",
+                             "Clock,Lat (d),Lon (d),H (m),Kurs (d)\n2026-06-01T06:00:00Z,52,5,100,90\n"
+                             "2026-06-01T06:00:10Z,52.001,5,100,90\n",
+                             "time=Clock,latitude=Lat (d),longitude=Lon (d),height=H (m),heading=Kurs (d)");
+  EXPECT_NEAR(r.objects.at(0).poses.at(0).latitude_deg, 52, 1e-9);
+}
+
 TEST(TablesOfOthers, OffsetsFromUtcCountForLocalTimesOnly) {
   const auto epochOf = [](const std::string& titles, const std::string& time, const std::string& offset) {
     std::string text = titles + ",lat,lon,alt_m\n";

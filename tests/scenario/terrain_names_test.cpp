@@ -404,7 +404,7 @@ TEST_F(TerrainNames, TablesOfPointsAreSortedByTheCommandOfTheMessage) {
 
 TEST_F(TerrainNames, GeopotentialBecomesHeightsByTheCommandOfTheMessage) {
   test::DemFile file = test::geographicDem(10, 50, 0.1, 10, 10, [](double, double) { return 500 * 9.80665; });
-  file.unit = "m**2 s**-2";
+  file.unit = "m2 s-2";
   file.write(folder_ / "a.tif");
   const std::string problem = problemOf(folder_ / "a.tif");
   const std::size_t begin = problem.find("gdal_translate"), end = problem.find(" makes heights");
