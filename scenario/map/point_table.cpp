@@ -51,6 +51,13 @@ std::string titleOf(std::string_view text) {
   return std::string(document::withoutBlanks(title));
 }
 
+/// True for columns such as "lat_min" and "Lon Sec".
+bool isPartOfAngle(std::string_view text) {
+  const std::string title = document::upperCase(text);
+  const bool is_angle = title.rfind("LAT", 0) == 0 || title.rfind("LON", 0) == 0;
+  return is_angle && (title.find("MIN") != std::string::npos || title.find("SEC") != std::string::npos);
+}
+
 /// Columns of a table; npos: it has none.
 struct PointColumns {
   static constexpr std::size_t kNone = std::string::npos;
@@ -214,7 +221,15 @@ std::optional<std::vector<NamedPoint>> readPointTable(const std::string& file,
   const std::size_t count = row.cells.size();
   std::vector<std::string> unused;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!columns.isUsed(i)) unused.emplace_back(row.cells[i].text);
+    if (columns.isUsed(i)) continue;
+    if (isPartOfAngle(row.cells[i].text)) {
+      throw Error(
+          ErrorCode::bad_input, {file, row.line, row.cells[i].column},
+          fmt::format("'{}' is a part of a position; write degrees, minutes and seconds in one column, "
+                      "such as 43 45.5 N",
+                      row.cells[i].text));
+    }
+    unused.emplace_back(row.cells[i].text);
   }
   PointReader points_in(file, columns);
   std::vector<NamedPoint> points;

@@ -132,6 +132,15 @@ TEST(CandidateSites, ColumnsOfATableThatAreNotUsedAreNamedInAWarning) {
   EXPECT_THAT(warnings, HasSubstr("height_agl_m"));
 }
 
+TEST(CandidateSites, MinutesInAColumnOfTheirOwnAreRefused) {
+  const test::TemporaryFolder folder;
+  EXPECT_THAT(
+      test::errorOf([&] {
+        readCandidates(folder.write("a.csv", "name,lat_deg,lat_min,lon_deg,lon_min\nA,43,45.5,-71,12\n"));
+      }),
+      HasSubstr("a.csv:1:14: 'lat_min' is a part of a position"));
+}
+
 TEST(CandidateSites, HeightsAreThoseOfAColumnThatStatesItsReference) {
   const test::TemporaryFolder folder;
   std::vector<CandidateSite> sites;
