@@ -21,11 +21,13 @@ RendererOptions sparseOnGpu() {
   return options;
 }
 
-/// A volume with few values above the floor.
+/// A volume with few values above the floor, and none in the east.
 std::shared_ptr<volume::DenseVolume> cutVolume(float least) {
+  constexpr int kEast = 30;
   auto volume = makeEmeVolume({100, 100, 50}, 3);
-  for (float& value : volume->values) {
-    if (value < least) value = volume->info.floor;
+  for (std::size_t i = 0; i < volume->values.size(); ++i) {
+    float& value = volume->values[i];
+    if (value < least || static_cast<int>(i % 100) >= kEast) value = volume->info.floor;
   }
   return volume;
 }
