@@ -135,8 +135,11 @@ TEST(PixelsOfMaps, SLOW_EqualProfileWithEveryModel) {
       SCOPED_TRACE(model.name + " at the " + site.name);
       const Differences found = compare(site, model.model, 30, random);
       compared += found.power_db.size();
-      EXPECT_LE(Differences::within(found.power_db, 1), 0.01);
-      EXPECT_LE(Differences::within(found.probability, 1), 1e-4);
+      // Maps of p528 are from a table, which is farther off at the steps of the model itself.
+      const bool is_of_table = model.model == propagation::PropagationModel::p528;
+      EXPECT_LE(Differences::within(found.power_db, is_of_table ? 0.95 : 1), 0.01);
+      EXPECT_LE(Differences::within(found.power_db, 1), is_of_table ? 0.03 : 0.01);
+      EXPECT_LE(Differences::within(found.probability, 1), is_of_table ? 0.01 : 1e-4);
     }
   }
   EXPECT_GT(compared, 3000u);
