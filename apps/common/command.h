@@ -22,6 +22,11 @@ struct GlobalOptions {
   bool quiet = false;
 };
 
+/// A number of GPUs as the option takes it.
+inline std::string devicesText(int devices) {
+  return devices == 0 ? "all" : std::to_string(devices);
+}
+
 /// Adds the option of the number of GPUs.
 inline CLI::Option* addDevicesOption(CLI::App& app, int& devices) {
   return app

@@ -41,9 +41,7 @@ std::vector<std::string> commandOf(const SiblingProgram& program, const GlobalOp
   }
   std::vector<std::string> words{(here.parent_path() / program.name).string()};
   if (global.backend != "auto") words.insert(words.end(), {"--backend", global.backend});
-  if (global.devices != 1) {
-    words.insert(words.end(), {"--devices", global.devices == 0 ? "all" : std::to_string(global.devices)});
-  }
+  if (global.devices != 1) words.insert(words.end(), {"--devices", devicesText(global.devices)});
   if (global.threads != 0) words.insert(words.end(), {"--threads", std::to_string(global.threads)});
   if (global.json && program.has_json) words.emplace_back("--json");
   if (global.quiet) words.emplace_back("--quiet");

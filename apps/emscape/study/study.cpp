@@ -123,6 +123,7 @@ std::vector<std::string> workerArguments(const StudyCommand& command, const Glob
   std::vector<std::string> arguments{
       "study",     command.study,  "-o",      command.folder, "--worker",
       "--backend", global.backend, "--quiet", "--threads",    fmt::format("{}", threads)};
+  if (global.devices != 1) arguments.insert(arguments.end(), {"--devices", devicesText(global.devices)});
   for (const scenario::Edit& edit : command.edits) {
     arguments.emplace_back("--set");
     arguments.push_back(toString(edit));
