@@ -27,7 +27,7 @@ void addOccupancy(const OccupancyPass& pass, const std::uint16_t* first_valid_k,
 /// How the sums of two groups of emitters become that of all.
 enum class Merge {
   add,
-  either,  ///< probabilities that exclude nothing: a + b (1 - a)
+  either,  ///< probability of at least one of two independent events: a + b (1 - a)
   larger,
   stronger  ///< the value of the larger `second`
 };
