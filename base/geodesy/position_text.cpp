@@ -139,7 +139,7 @@ std::optional<ParsedPosition> parseHorizontal(const std::string& text) {
     const GeographicLib::GeoCoords read(coordinates);
     if (!std::isfinite(read.Latitude()) || !std::isfinite(read.Longitude())) return std::nullopt;
     return ParsedPosition{read.Latitude(), wrapLongitude_deg(read.Longitude()), {}};
-  } catch (const GeographicLib::GeographicErr&) {
+  } catch (const std::exception&) {  // GeographicErr, and std::length_error for some texts with four parts
     return std::nullopt;
   }
 }
@@ -227,7 +227,7 @@ std::optional<double> parseCoordinate(const std::string& text, bool is_latitude)
     const double degrees = DMS::Decode(joined, kind);
     const bool is_other = kind == (is_latitude ? DMS::LONGITUDE : DMS::LATITUDE);
     return is_other || !std::isfinite(degrees) ? std::nullopt : std::optional(static_cast<double>(degrees));
-  } catch (const GeographicLib::GeographicErr&) {
+  } catch (const std::exception&) {  // GeographicErr, and std::length_error for some texts with four parts
     return std::nullopt;
   }
 }

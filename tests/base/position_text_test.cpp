@@ -26,7 +26,8 @@ TEST(PositionText, OneCoordinateIsReadInEachForm) {
        {"-84.2", "84.2W", "84.2°W", "W84.2", "84°12'W", "84°12'00.0\"W", "84d12'W", "-84 12 0"})
     EXPECT_NEAR(parseCoordinate(text, false).value_or(NAN), -84.2, 1e-9) << text;
   EXPECT_NEAR(parseCoordinate("44 24 30", true).value_or(NAN), 44 + 24.5 / 60, 1e-9);
-  for (const char* text : {"", "west", "84.2N", "44.4 -71.2", "44 71", "44.4, -71.2", "84 kW"})
+  for (const char* text :
+       {"", "west", "84.2N", "44.4 -71.2", "44 71", "44.4, -71.2", "84 kW", "39d3  3   3  3  3   3"})
     EXPECT_FALSE(parseCoordinate(text, false)) << text;
 }
 
