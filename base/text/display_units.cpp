@@ -21,9 +21,6 @@ DisplayUnit distanceUnit(Units units) {
 DisplayUnit heightUnit(Units units) {
   return units == Units::metric ? DisplayUnit{"m", 1} : DisplayUnit{"ft", 0.3048};
 }
-DisplayUnit speedUnit(Units units) {
-  return units == Units::metric ? DisplayUnit{"m/s", 1} : DisplayUnit{"kt", 1852.0 / 3600};
-}
 
 std::string distanceText(double distance_m, Units units) {
   if (units == Units::metric && std::abs(distance_m) < 999.5) return fmt::format("{:.0f} m", distance_m);
@@ -44,11 +41,6 @@ std::string roundDistanceText(double distance_m, Units units) {
 std::string heightText(double height_m, Units units) {
   const DisplayUnit unit = heightUnit(units);
   return fmt::format("{:.0f} {}", height_m / unit.factor, unit.name);
-}
-
-std::string speedText(double speed_m_s, Units units) {
-  const DisplayUnit unit = speedUnit(units);
-  return fmt::format("{:.0f} {}", speed_m_s / unit.factor, unit.name);
 }
 
 }  // namespace emscape

@@ -14,7 +14,6 @@ struct DisplayUnit {
 };
 DisplayUnit distanceUnit(Units units);  ///< km, NM
 DisplayUnit heightUnit(Units units);    ///< m, ft
-DisplayUnit speedUnit(Units units);     ///< m/s, kt
 
 /// "850 m", "12.3 km", "160 km"; "0.46 NM", "86.4 NM".
 std::string distanceText(double distance_m, Units units);
@@ -22,7 +21,5 @@ std::string distanceText(double distance_m, Units units);
 std::string roundDistanceText(double distance_m, Units units);
 /// "250 m", "820 ft".
 std::string heightText(double height_m, Units units);
-/// "120 m/s", "233 kt".
-std::string speedText(double speed_m_s, Units units);
 
 }  // namespace emscape

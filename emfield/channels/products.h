@@ -33,7 +33,8 @@ struct ProductScale {
 
 EMSCAPE_HD inline float decibelsOf(const ProductScale& product, float accumulator) {
   const float value = product.scale * fastRatioToDb(accumulator) + product.offset;
-  return (accumulator > 0) & (value > product.floor) ? value : product.floor;
+  const bool is_above = (accumulator > 0) & (value > product.floor);
+  return is_above ? value : product.floor;
 }
 /// @param second  of ProductForm::signal_ratio
 EMSCAPE_HD inline float valueOf(const ProductScale& product, float accumulator, float second) {

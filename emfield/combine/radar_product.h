@@ -167,7 +167,8 @@ EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root
     value = task.reduction == Reduction::sum ? either : value;
   } else if constexpr (measure == RadarMeasure::detection_age) {
     const float probability = task.curve(fastRatioToDb(echo_to_noise / (1 + jamming_to_noise)));
-    value = (echo_to_noise > 0) & (probability >= task.lowest) ? task.ceiling - looks : 0.0f;
+    const bool is_detected = (echo_to_noise > 0) & (probability >= task.lowest);
+    value = is_detected ? task.ceiling - looks : 0.0f;
   } else if constexpr (measure == RadarMeasure::root_of_signal_to_clutter_and_noise) {
     value = echo_to_noise_root / std::sqrt(1 + jamming_to_noise);
   }

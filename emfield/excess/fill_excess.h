@@ -51,8 +51,7 @@ struct ExcessGrid {
   /// True if no layer of a column counts, for a reason other than missing terrain, which is reported. For a
   /// tilted column terrain may be missing anywhere.
   EMSCAPE_HD bool isLeftOut(std::size_t column) const {
-    return !tilted && first_valid_k != nullptr && first_valid_k[column] >= layers &&
-           !(ground_msl_m != nullptr && ground_msl_m[column] != ground_msl_m[column]);
+    return !tilted && first_valid_k != nullptr && first_valid_k[column] >= layers && !isWithoutGround(column);
   }
   /// True if terrain is missing below a column that is not tilted: every path to it is unknown to the models
   /// that need terrain.

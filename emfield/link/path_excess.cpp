@@ -88,12 +88,8 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
   const propagation::TerminalClutter terminal = terminalClutter(scenario, emitter, station, terrain);
   const auto end_agl_m = static_cast<float>(profile.end.height_msl_m) - profile.ground_msl_m.back();
   if (const int ends = terminal.ends(static_cast<float>(profile.range_m), end_agl_m); ends > 0) {
-    const auto bare_db = static_cast<float>(excess.loss_db);
-    const double loss_db =
-        terminal.is_larger
-            ? static_cast<double>(
-                  terminal.withLossDb(bare_db, static_cast<float>(profile.range_m), end_agl_m) - bare_db)
-            : static_cast<double>(terminal.lossDb(static_cast<float>(profile.range_m), end_agl_m));
+    double loss_db = static_cast<double>(terminal.lossDb(static_cast<float>(profile.range_m), end_agl_m));
+    if (terminal.is_larger) loss_db = std::max(loss_db - excess.loss_db, 0.0);
     excess.add("terminal_clutter",
                fmt::format("clutter around {} (P.2108-1, {:g} % of locations{})",
                            ends > 1 ? "both ends" : "one end", scenario.ground.terminal_clutter_percent,

@@ -94,7 +94,7 @@ std::string pointingText(const PathBudget& budget) {
 /// What trees and buildings cost, if that is worth saying.
 std::string clutterCostText(const PathBudget& budget) {
   constexpr double kWorthSaying_db = 1;
-  if (budget.excess.clutter_db < kWorthSaying_db) return "";
+  if (budget.excess.clutter_db < kWorthSaying_db || std::isinf(budget.excess.loss_db)) return "";
   return fmt::format(", {:.1f} dB of it by trees and buildings", budget.excess.clutter_db);
 }
 

@@ -125,11 +125,6 @@ struct ItmQuantiles {
   Real time_percent = 50;
   Real location_percent = 50;
   Real situation_percent = 50;
-
-  /// The form in confidence and reliability.
-  static EMSCAPE_HD ItmQuantiles fromConfidence(Real confidence_percent, Real reliability_percent) {
-    return {reliability_percent, 50, confidence_percent};
-  }
 };
 
 template <class Real>

@@ -1,14 +1,10 @@
 /// The handshake of real-time ACMI: what client and host send before the stream.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace emscape::interop {
-
-/// Convention of Tacview.
-constexpr std::uint16_t kAcmiPort = 42674;
 
 /// Hashes of a password: of its UTF-16LE text. A host accepts either.
 /// @see CRC-64/WE (polynomial 42F0E1EBA9EA3693) and CRC-32/ISO-HDLC; lower-case hexadecimal without padding

@@ -39,7 +39,6 @@ struct Header {
 
   /// Seconds past the hour.
   double seconds() const { return (timestamp >> 1) * (3600.0 / kTimestampsPerHour); }
-  bool isAbsolute() const { return (timestamp & 1) != 0; }
 };
 
 struct EntityId {

@@ -41,7 +41,6 @@ class Taper {
   double halfPower() const { return half_power_; }
   /// Directivity of `elements` with these weights relative to uniform weights, (sum w)^2 / (N sum w^2): 0..1.
   double arrayEfficiency(int elements) const;
-  int nBar() const { return static_cast<int>(harmonics_.size()) + 1; }  ///< Taylor's n-bar; else 1
 
  private:
   double weight(double x) const;

@@ -427,9 +427,16 @@ void requireScenario(const ParseResult& result) {
   throw Error(ErrorCode::bad_input, all);
 }
 
-}  // namespace
-
-namespace {
+/// @throws Error (bad_input) if there is no text
+ParseContext contextOfEdits(const Scenario& scenario) {
+  if (!scenario.source) {
+    throw Error(ErrorCode::bad_input, "the scenario was not read from a file: there is no text to edit");
+  }
+  ParseContext context;
+  context.file = scenario.file;
+  context.read_for = scenario.source->read_for;
+  return context;
+}
 
 /// @param readBytes  returns the text; its errors are problems of the result
 ParseResult parsed(const std::string& file, const std::function<std::string()>& readBytes,
@@ -471,17 +478,8 @@ ParseResult parseScenarioText(const std::string& file, const std::string& text,
       file, [&] { return text; }, edits, read_for);
 }
 
-std::string originalText(const Scenario& scenario) {
-  return scenario.source ? scenario.source->text.original() : "";
-}
-
 ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edits) {
-  if (!scenario.source) {
-    throw Error(ErrorCode::bad_input, "the scenario was not read from a file: there is no text to edit");
-  }
-  ParseContext context;
-  context.file = scenario.file;
-  context.read_for = scenario.source->read_for;
+  ParseContext context = contextOfEdits(scenario);
   ScenarioSource source;
   source.text = scenario.source->text;
   source.root = scenario.source->root;
@@ -491,12 +489,7 @@ ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edit
 }
 
 std::shared_ptr<const Scenario> withEdits(const Scenario& scenario, const std::vector<Edit>& edits) {
-  if (!scenario.source) {
-    throw Error(ErrorCode::bad_input, "the scenario was not read from a file: there is no text to edit");
-  }
-  ParseContext context;
-  context.file = scenario.file;
-  context.read_for = scenario.source->read_for;
+  ParseContext context = contextOfEdits(scenario);
   ScenarioSource source;
   source.text = {scenario.file, scenario.source->text.original()};
   source.root = document::readDocument(scenario.file, source.text.text(), context.problems);

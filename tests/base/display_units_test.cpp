@@ -17,7 +17,6 @@ TEST(DisplayUnits, LengthsAndSpeedsHaveThreeDigits) {
   EXPECT_EQ(roundDistanceText(15000, Units::nautical), "8.1 NM");
   EXPECT_EQ(heightText(250, Units::metric), "250 m");
   EXPECT_EQ(heightText(250, Units::nautical), "820 ft");
-  EXPECT_EQ(speedText(120, Units::nautical), "233 kt");
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "propagation/p2108/p2108.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/test_scenario.h"
+#include "tests/support/on_backends.h"
 
 namespace emscape::emfield {
 namespace {
@@ -26,6 +27,7 @@ using propagation::TerminalClutterModel;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 double lossOf(double frequency_ghz, double distance_m, double percent) {
   return propagation::p2108LossDb(frequency_ghz, distance_m, -propagation::normalDeviate(percent / 100));
@@ -135,8 +137,9 @@ TEST(ClutterHeights, AreNotAddedWithinFiftyMetresOfTheEnds) {
 /// The excess of a surface at a height above ground along the meridian of the mast.
 std::vector<float> excessOfSurface(const std::shared_ptr<scenario::Scenario>& scenario,
                                    const scenario::TerrainPtr& terrain, const std::vector<double>& latitudes,
-                                   double height_agl_m) {
+                                   double height_agl_m, Backend backend) {
   FieldOptions options;
+  options.backend = backend;
   auto surface = std::make_shared<Surface>();
   surface->width = static_cast<int>(latitudes.size());
   surface->height = 1;
@@ -150,10 +153,17 @@ std::vector<float> excessOfSurface(const std::shared_ptr<scenario::Scenario>& sc
   return {values->values.begin(), values->values.end()};
 }
 
-TEST(ClutterHeights, AndTerminalClutterAreTheSameInFieldsAndOnPaths) {
+class ClutterInFields : public test::OnBackends {};
+EMSCAPE_ON_BACKENDS(ClutterInFields);
+
+TEST_P(ClutterInFields, AlongPathsAndAtTheirEndsEqualsThatOfPaths) {
   const std::vector<double> latitudes{45.003, 45.02, 45.03, 45.06};
-  for (const bool is_everywhere : {false, true}) {
-    const auto wood = std::make_shared<GroundWithTrees>(is_everywhere);
+  const scenario::TerrainPtr grounds[] = {
+      std::make_shared<GroundWithTrees>(false), std::make_shared<GroundWithTrees>(true),
+      std::make_shared<MadeTerrain>(45, 5, 0.2, [](double, double north_deg) {
+        return north_deg > 0.115 && north_deg < 0.125 ? 160.0 : 100.0;
+      })};
+  for (const scenario::TerrainPtr& ground : grounds) {
     for (const PropagationModel model :
          {PropagationModel::free_space, PropagationModel::horizon, PropagationModel::diffraction,
           PropagationModel::two_ray, PropagationModel::itm, PropagationModel::p1812}) {
@@ -164,9 +174,9 @@ TEST(ClutterHeights, AndTerminalClutterAreTheSameInFieldsAndOnPaths) {
           scenario->ground.terminal_clutter_combine = propagation::ClutterCombination::larger;
         scenario->ground.terminal_clutter =
             with_terminal ? TerminalClutterModel::p2108 : TerminalClutterModel::none;
-        const std::vector<float> field = excessOfSurface(scenario, wood, latitudes, 3);
+        const std::vector<float> field = excessOfSurface(scenario, ground, latitudes, 3, GetParam());
         for (std::size_t i = 0; i < latitudes.size(); ++i) {
-          const PathBudget budget = budgetTo(scenario, *wood, latitudes[i], 103);
+          const PathBudget budget = budgetTo(scenario, *ground, latitudes[i], 103);
           EXPECT_NEAR(double(field[i]), budget.find("power_density_dbwm2")->value, 0.1)
               << toString(model) << " at " << latitudes[i] << ", terminal clutter: " << terminal;
           EXPECT_EQ(budget.find("terminal_clutter_db") != nullptr, with_terminal);
@@ -196,6 +206,21 @@ TEST(TerminalClutter, IsAddedOrReplacesASmallerLossByTerrain) {
     EXPECT_NEAR(lossAt(latitude_deg), by_terrain_db + clutter_db, 0.02);
     scenario->ground.terminal_clutter_combine = propagation::ClutterCombination::larger;
     EXPECT_NEAR(lossAt(latitude_deg), std::max(by_terrain_db, clutter_db), 0.02);
+  }
+}
+
+TEST(TerminalClutter, AddsNothingToAFieldThatTerrainEnds) {
+  const MadeTerrain hill(45, 5, 0.2, [](double, double north_deg) {
+    return north_deg > 0.115 && north_deg < 0.125 ? 300.0 : 100.0;
+  });
+  const auto scenario = mastOf(PropagationModel::horizon, 10);
+  scenario->ground.terminal_clutter = TerminalClutterModel::p2108;
+  for (const auto combine : {propagation::ClutterCombination::sum, propagation::ClutterCombination::larger}) {
+    scenario->ground.terminal_clutter_combine = combine;
+    const PathBudget budget = budgetTo(scenario, hill, 45.06, 102);
+    EXPECT_FALSE(std::isnan(budget.excess.clutter_db));
+    EXPECT_EQ(budget.excess.loss_db, INFINITY);
+    EXPECT_THAT(budget.verdict, Not(HasSubstr("trees")));
   }
 }
 

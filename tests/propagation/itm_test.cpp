@@ -231,13 +231,6 @@ TEST(Itm, LossGrowsWithEveryPercentage) {
   }
 }
 
-TEST(Itm, ConfidenceAndReliabilityAreSituationAndTime) {
-  const auto quantiles = ItmQuantiles<double>::fromConfidence(90, 70);
-  EXPECT_EQ(quantiles.situation_percent, 90);
-  EXPECT_EQ(quantiles.time_percent, 70);
-  EXPECT_EQ(quantiles.location_percent, 50);
-}
-
 TEST(Itm, DoesNotDependOnWhichEndTransmits) {
   std::vector<double> heights_m = someHills();
   const auto forth = itmPointToPoint(profileOf(heights_m), someLink(), ItmQuantiles<double>());

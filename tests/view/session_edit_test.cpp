@@ -101,7 +101,7 @@ TEST(SessionEdits, ANewNameComputesNothingAndIsFollowed) {
   EXPECT_EQ(session->picture()->volume.dense(), before) << "not computed again";
   EXPECT_EQ(session->selected(), "emitters.eye");
   EXPECT_EQ(session->view().quantity, "snr_db:eye");
-  EXPECT_EQ(session->shownQuantity(), "snr_db:eye");
+  EXPECT_EQ(session->picture()->info().quantity, "snr_db:eye");
   EXPECT_EQ(session->view().follow, "hill");
   EXPECT_EQ(session->view().range_rings.front().emitter, "eye");
   session.perform(R"({"do":"undo"})");

@@ -100,11 +100,11 @@ TEST_F(SessionProgram, ComputesFromTheCommandOnUntilThePictureHoldsIt) {
   waitUntil([this] { return session->report()["program"] != "COMPUTING"; });
   EXPECT_EQ(session->status().shown_s, 3.3);
   perform(R"({"do":"quantity","name":"field_strength_dbuvm"})");
-  EXPECT_TRUE(session->isQuantityPending());
-  EXPECT_EQ(session->shownQuantity(), "power_density_dbwm2") << "so is the legend";
+  EXPECT_TRUE(session->status().computing);
+  EXPECT_EQ(session->picture()->info().quantity, "power_density_dbwm2") << "so is the legend";
   waitUntil([this] { return session->report()["program"] != "COMPUTING"; });
-  EXPECT_EQ(session->shownQuantity(), "field_strength_dbuvm");
-  EXPECT_FALSE(session->isQuantityPending());
+  EXPECT_EQ(session->picture()->info().quantity, "field_strength_dbuvm");
+  EXPECT_FALSE(session->status().computing);
 }
 
 TEST_F(SessionProgram, CancelGoesBackToWhatThePictureShows) {
@@ -165,7 +165,7 @@ TEST_F(SessionProgram, CancelledTimesAndQuantitiesReturn) {
   if (!session->status().computing) GTEST_SKIP() << "computed already";
   perform(R"({"do":"back"})");
   settle();
-  EXPECT_EQ(session->shownQuantity(), "power_density_dbwm2");
+  EXPECT_EQ(session->picture()->info().quantity, "power_density_dbwm2");
   EXPECT_EQ(session->timeline().asked_s(), 0);
 }
 

@@ -43,15 +43,15 @@ std::vector<DenseVolume> listOf(DenseVolume volume) {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> kFormats = {
-      {{"vdb", true, true, false}, writeVdb, readVdb, describeVdb, setVdbRange},
-      {{"nvdb", true, true, false}, writeNvdb, readNvdb, describeNvdb, setNvdbRange},
-      {{"vti", true, true, true}, writeVti, readVti, describeVti, setVtiRange},
-      {{"raw", true, false, false},
+      {{"vdb", true, true}, writeVdb, readVdb, describeVdb, setVdbRange},
+      {{"nvdb", true, true}, writeNvdb, readNvdb, describeNvdb, setNvdbRange},
+      {{"vti", true, true}, writeVti, readVti, describeVti, setVtiRange},
+      {{"raw", true, false},
        [](const fs::path& path, const Volumes& volumes) { writeRaw(path, *volumes.front()); },
        [](const fs::path& path, const std::string& name) { return named(readRaw(path), path, name); },
        [](const fs::path& path) { return listOf(describeRaw(path)); },
        setRawRange},
-      {{"dat", false, false, false},
+      {{"dat", false, false},
        nullptr,
        [](const fs::path& path, const std::string& name) { return named(readDat(path), path, name); },
        [](const fs::path& path) { return listOf(describeDat(path)); },

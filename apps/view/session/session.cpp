@@ -243,14 +243,6 @@ void Session::setPictureSize(render::ImageSize size) {
   live_.show(view_);
 }
 
-std::string Session::shownQuantity() const {
-  return picture_ ? picture_->info().quantity : "";
-}
-
-bool Session::isQuantityPending() const {
-  return picture_ && status_.computing && last_shown_.quantity != view_.quantity;
-}
-
 bool Session::exact() const {
   return picture_ && status_.exact;
 }

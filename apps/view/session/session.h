@@ -113,10 +113,6 @@ class Session {
   ProgramState programState() const;
   /// Limit of status().cached_bytes.
   std::size_t cacheLimit_bytes() const { return cache_limit_bytes_; }
-  /// Quantity or channel of the picture; empty before the first.
-  std::string shownQuantity() const;
-  /// True while a picture of another quantity is requested.
-  bool isQuantityPending() const;
   bool exact() const;
   /// True if requested edits or readings are pending: scripts wait for them.
   bool isAnswering() const { return edit_queue_.isBusy() || prober_.isBusy(); }

@@ -71,9 +71,6 @@ std::vector<std::string> filesOf(const Scenario& scenario);
 /// text; (other) if the file cannot be written
 void saveScenario(const Scenario& scenario, const std::string& file);
 
-/// The text that a scenario was read from, without its edits; empty if it was not read.
-std::string originalText(const Scenario& scenario);
-
 /// The JSON Schema (draft 2020-12) of the format, made from the table that the parser uses.
 std::string scenarioJsonSchema();
 

@@ -15,8 +15,7 @@ namespace emscape::volume {
 struct FileFormat {
   std::string name;  ///< name on the command line, and extension: "vdb"
   bool writable = true;
-  bool several = false;   ///< holds several volumes
-  bool one_grid = false;  ///< ... on one common grid
+  bool several = false;  ///< holds several volumes
 };
 
 /// All formats; folders are searched in this order.
