@@ -12,6 +12,7 @@
 #include "apps/common/components.h"
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
+#include "base/geodesy/gdal_file.h"
 #include "base/text/failure_text.h"
 #include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
@@ -189,6 +190,7 @@ int runCommandLine(const std::vector<std::string>& words, const AddSubcommands& 
 }
 
 int runProgram(const std::vector<std::string>& words, const AddSubcommands& addSubcommands) {
+  gdal::ignoreEnvironment();
   const int status = runCommandLine(words, addSubcommands);
   if (status == 0) return 0;
   // After a netCDF file could not be written to a full disk, HDF5 crashes in its exit handler. Nothing else

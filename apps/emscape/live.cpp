@@ -44,6 +44,7 @@ struct LiveFieldStatus {
   double field_ms = 0, latency_ms = 0;  ///< of the last one
   int column_step = 1;                  ///< of the last one: 1 is the whole field
   std::string trouble;                  ///< why there is none
+  std::string unwritten;                ///< why the last one is not in its file; tried again
 };
 
 /// Computes the field whenever the battlefield has changed.
@@ -100,16 +101,24 @@ class LiveField {
     return true;
   }
 
-  /// Writes the field if it has changed.
+  /// Writes the field if it has changed, or could not be written before.
   void write(const std::filesystem::path& folder) {
-    if (!solver_ || !std::exchange(is_new_, false)) return;
+    if (!solver_ || !is_new_) return;
     std::vector<const volume::DenseVolume*> volumes;
     std::vector<std::shared_ptr<const volume::DenseVolume>> kept;
     for (const volume::Volume& volume : solver_->volumes()) {
       kept.push_back(volume.host());
       volumes.push_back(kept.back().get());
     }
-    volume::writeVolumes(folder / "live.vdb", volumes);
+    std::string failure;
+    try {
+      volume::writeVolumes(folder / "live.vdb", volumes);
+      is_new_ = false;
+    } catch (const Error& error) {
+      failure = error.what();
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    told_.unwritten = failure;
   }
 
   /// Of the fields so far; any thread may ask.
@@ -176,6 +185,11 @@ class EachSecond {
   std::thread thread_;  ///< the last: it uses the others
 };
 
+/// Two texts, of which either may be empty.
+std::string joined(const std::string& first, const std::string& second) {
+  return first + (first.empty() || second.empty() ? "" : "; ") + second;
+}
+
 Json jsonOf(const playback::StreamStatus& status, const LiveFieldStatus& field, double t_s) {
   const auto rounded = [](double value) { return std::round(value * 1000) / 1000; };
   Json line{{"t_s", rounded(t_s)},
@@ -199,8 +213,7 @@ Json jsonOf(const playback::StreamStatus& status, const LiveFieldStatus& field, 
   line["silent"] = status.silent;
   line["untold"] = status.untold;
   line["age_s"] = status.age_s ? Json(rounded(*status.age_s)) : Json();
-  line["trouble"] =
-      status.trouble + (status.trouble.empty() || field.trouble.empty() ? "" : "; ") + field.trouble;
+  line["trouble"] = joined(joined(status.trouble, field.trouble), field.unwritten);
   return line;
 }
 
@@ -220,12 +233,13 @@ int live(const LiveArguments& arguments, const GlobalOptions& global) {
     const playback::StreamStatus status = battlefield.status();
     const LiveFieldStatus of_field = field.status();
     const double t_s = playback::steadyTime_s() - begin_s;
+    const std::string trouble = joined(of_field.trouble, of_field.unwritten);
     if (global.json) {
       print("{}\n", jsonOf(status, of_field, t_s).dump());
     } else if (!global.quiet) {
       print("{:6.0f} s  {}; {} emitters, {} unmatched; field {:.0f} ms, latency {:.0f} ms{}\n", t_s,
             status.text(), status.emitters, status.unmatched, of_field.field_ms, of_field.latency_ms,
-            of_field.trouble.empty() ? "" : "; " + of_field.trouble);
+            trouble.empty() ? "" : "; " + trouble);
     }
     finishResult();
   };
@@ -251,6 +265,8 @@ int live(const LiveArguments& arguments, const GlobalOptions& global) {
   teller.end();
   tell();
   battlefield.finishRecording();
+  if (const std::string failure = field.status().unwritten; !failure.empty())
+    throw Error(ErrorCode::other, failure);
   return 0;
 }
 

@@ -134,6 +134,12 @@ int UnfinishedFile::rename(const std::string& name, bool replaces) const {
   const Descriptor opened(
       ::openat(own_folder_.number(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (!opened.isOpen() || ::fsync(opened.number()) != 0) return errno;
+  // Who may read and write a file that is replaced stays as its owner has set it.
+  struct stat replaced {};
+  if (replaces && ::fstatat(folder_.number(), name.c_str(), &replaced, AT_SYMLINK_NOFOLLOW) == 0 &&
+      S_ISREG(replaced.st_mode) && ::fchmod(opened.number(), replaced.st_mode & 0777) != 0) {
+    return errno;
+  }
   const auto renamed = [&](unsigned flags) {
     return ::renameat2(own_folder_.number(), name.c_str(), folder_.number(), name.c_str(), flags) == 0;
   };

@@ -1,9 +1,10 @@
 /// Clutter in the resolution cell of a voxel while a radar's beam is aimed at it.
 ///
-/// Land and sea: the map at the beam's azimuth and the voxel's slant range, weighted by the two-way pattern
-/// towards the surface. Rain: the beam's cross section times the range cell, in the part of the two-way power
-/// between mean sea level and the top of the rain. An array's beam widens with the steering, by the direction
-/// cosines of its plane (Mailloux, Phased Array Antenna Handbook, ch. 1).
+/// Land and sea: the map at the beam's azimuth and the voxel's slant range, and at those of the other trips
+/// whose echoes arrive with it, each weighted by the two-way pattern towards its surface. Rain: the beam's
+/// cross section times the range cell, in the part of the two-way power between mean sea level and the top of
+/// the rain. An array's beam widens with the steering, by the direction cosines of its plane (Mailloux,
+/// Phased Array Antenna Handbook, ch. 1).
 #pragma once
 
 #include <cmath>
@@ -109,12 +110,23 @@ EMSCAPE_HD inline float surfaceToNoise(const ClutterTask& task, const Map& map, 
   return task.surface * widening * cell.echo * power * power;
 }
 
-/// The sum of both.
+/// The same in one of the trips that arrive with a slant range.
 template <scenario::PatternKind kind, class Map>
-EMSCAPE_HD inline float clutterToNoise(const ClutterTask& task, const Map& map, const EmitterBeam& beam,
-                                       const Aim& aim, float range_m) {
-  return (task.surface > 0 ? surfaceToNoise<kind>(task, map, beam, aim, range_m) : 0.0f) +
-         (task.rain > 0 ? rainToNoise(task, beam, aim, range_m) : 0.0f);
+EMSCAPE_HD inline float surfaceOfTrip(const ClutterTask& task, const Map& map, const EchoTrips& trips,
+                                      const EmitterBeam& beam, const Aim& aim, float range_m, int trip) {
+  const float there_m = trips.range_m(range_m, trip);
+  const float value = surfaceToNoise<kind>(task, map, beam, aim, there_m);
+  return there_m < trips.end_m ? value : 0.0f;
+}
+
+/// The sum of rain and of all trips of the surface.
+template <scenario::PatternKind kind, class Map>
+EMSCAPE_HD inline float clutterToNoise(const ClutterTask& task, const Map& map, const EchoTrips& trips,
+                                       const EmitterBeam& beam, const Aim& aim, float range_m) {
+  float sum = task.rain > 0 ? rainToNoise(task, beam, aim, range_m) : 0.0f;
+  for (int trip = 0; task.surface > 0 && trip < trips.count; ++trip)
+    sum += surfaceOfTrip<kind>(task, map, trips, beam, aim, range_m, trip);
+  return sum;
 }
 
 /// Slant range (m) of a voxel, at least kMinDistance_m.

@@ -57,6 +57,11 @@ struct HeardRanges {
     const float part = from_pulse_m < pulse_m ? from_pulse_m / pulse_m : 1.0f;
     return range_m <= farthest_m ? part : 0.0f;
   }
+  /// The same of clutter, which is eclipsed as the echo that it arrives with.
+  EMSCAPE_HD float powerOf(float range_m) const {
+    const float amplitude = amplitudeOf(range_m);
+    return amplitude * amplitude;
+  }
 };
 
 /// A radar's contribution to a channel, as plain data.
@@ -247,7 +252,9 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
   if constexpr (kAny) {
     if (!task.clutter.isNone()) {
       const AimedVoxel aimed = aimedVoxel(look, pass.beam, column, t_m);
-      jamming += clutterToNoise<kind>(task.clutter, pass.clutter_map, pass.beam, aimed.aim, aimed.range_m);
+      jamming += task.heard.powerOf(aimed.range_m) * clutterToNoise<kind>(task.clutter, pass.clutter_map,
+                                                                          pass.clutter_map.trips, pass.beam,
+                                                                          aimed.aim, aimed.range_m);
     }
   }
   const bool is_age = kAny && task.measure == RadarMeasure::detection_age;

@@ -44,10 +44,11 @@ ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emit
   grid.ranges = static_cast<int>(std::ceil(farthest_m / step_m)) + 1;
   grid.step_m = static_cast<float>(step_m);
   grid.part_of_step = static_cast<float>(cell_m / step_m);
-  grid.region_ranges = static_cast<int>(std::ceil(reach / step_m)) + 1;
-  const double repeat_cells = radar.waveform ? radar.waveform->unambiguousRange_m() / step_m : 0;
-  if (repeat_cells > 2 && repeat_cells < grid.region_ranges)
-    grid.repeat_cells = static_cast<float>(repeat_cells);
+  const double repeat_m = radar.waveform ? radar.waveform->unambiguousRange_m() : 0;
+  if (repeat_m > 2 * step_m && repeat_m < reach) {
+    grid.trips = {static_cast<float>(repeat_m), static_cast<int>(std::ceil(reach / repeat_m)),
+                  static_cast<float>(reach)};
+  }
   return grid;
 }
 

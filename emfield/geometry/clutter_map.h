@@ -4,10 +4,10 @@
 /// One walk outwards per azimuth: a post is in sight if its elevation is above those of all posts before it,
 /// over an earth of effective radius. The face between it and the post before is then also in sight. The
 /// face's echo is its reflectivity at the grazing angle of the ray on it, times its area. The map depends on
-/// the radar's site, its wave, its range cell and its pulse repetition, not on the direction of its beam.
+/// the radar's site, its wave and its range cell, not on the direction of its beam.
 ///
-/// Echoes of second and later trips arrive with those of nearer surfaces: a cell is the sum over all ranges
-/// that are a whole number of unambiguous ranges from its own, as far as the region's farthest point.
+/// Echoes of second and later trips arrive with those of nearer surfaces (EchoTrips): each has the pattern
+/// towards its own surface.
 #pragma once
 
 #include <cmath>
@@ -33,13 +33,24 @@ struct ClutterCell {
   float echo_times_sine = 0;
 };
 
+/// Slant ranges from which echoes arrive together: they differ by whole unambiguous ranges.
+struct EchoTrips {
+  float repeat_m = 1e30f;  ///< the unambiguous range c / (2 PRF); not less than the region: one trip
+  int count = 1;
+  float end_m = 1e30f;  ///< of the surfaces that count: the region's farthest point
+
+  /// The range in a trip, 0 .. count - 1, of what arrives with an echo from a range.
+  EMSCAPE_HD float range_m(float range_m, int trip) const {
+    return range_m + repeat_m * (static_cast<float>(trip) - std::floor(range_m / repeat_m));
+  }
+};
+
 /// Positions of the cells: azimuth clockwise from north, 2 pi i / azimuths; slant range (n + 1/2) step.
 struct ClutterGrid {
   int azimuths = 0, ranges = 0;
   float step_m = 1;        ///< >= the radar's range cell
   float part_of_step = 1;  ///< range cell over step
-  float repeat_cells = 0;  ///< the unambiguous range, in cells; 0: beyond the region
-  int region_ranges = 0;   ///< cells as far as the region's farthest point
+  EchoTrips trips;
 
   std::size_t cells() const { return static_cast<std::size_t>(azimuths) * static_cast<std::size_t>(ranges); }
 };
@@ -80,6 +91,7 @@ struct ClutterMapView {
   const ClutterCell* cells = nullptr;  ///< azimuths x ranges, range fastest
   int azimuths = 0, ranges = 0;
   float cells_per_m = 0, azimuths_per_rad = 0;
+  EchoTrips trips;
 
   /// Beyond the last range, the value at the last range.
   EMSCAPE_HD ClutterCell cellAt(float azimuth_rad, float range_m) const {
@@ -132,35 +144,9 @@ struct ClutterMapTask {
       }
       before = here;
     });
-    if (grid.repeat_cells > 0) addTrips(row);
   }
 
  private:
-  /// Replaces echoes by those that arrive at the same time after a pulse. In place: a cell is replaced when
-  /// no later one needs it.
-  EMSCAPE_HD void addTrips(ClutterCell* row) const {
-    const auto add = [row](ClutterCell& to, float place, int end) {
-      const int below = static_cast<int>(place);
-      if (below + 1 >= end) return;
-      const float weight = place - static_cast<float>(below);
-      to.echo += lerp(row[below].echo, row[below + 1].echo, weight);
-      to.echo_times_sine += lerp(row[below].echo_times_sine, row[below + 1].echo_times_sine, weight);
-    };
-    const int sources = grid.region_ranges < grid.ranges ? grid.region_ranges : grid.ranges;
-    int first_trip = 0;
-    for (; first_trip < grid.ranges && first_trip + 0.5f < grid.repeat_cells; ++first_trip) {
-      for (float place = first_trip + grid.repeat_cells; place + 1 < sources; place += grid.repeat_cells)
-        add(row[first_trip], place, sources);
-    }
-    for (int n = first_trip; n < grid.ranges; ++n) {
-      const float middle = static_cast<float>(n) + 0.5f;
-      const float in_trip = middle - grid.repeat_cells * std::floor(middle / grid.repeat_cells) - 0.5f;
-      const float place = in_trip < 0 ? 0 : in_trip > first_trip - 1.001f ? first_trip - 1.001f : in_trip;
-      row[n] = {};
-      add(row[n], place < 0 ? 0 : place, first_trip);
-    }
-  }
-
   struct Post {
     double range_m = 0, height_msl_m = 0, slant_m = 0;
     SurfaceFace face;
@@ -202,7 +188,9 @@ struct ClutterMapTask {
 };
 
 EMSCAPE_HD inline ClutterMapView clutterMapView(const ClutterGrid& grid, const ClutterCell* cells) {
-  return {cells, grid.azimuths, grid.ranges, 1 / grid.step_m, static_cast<float>(grid.azimuths / (2 * kPi))};
+  return {
+      cells,     grid.azimuths, grid.ranges, 1 / grid.step_m, static_cast<float>(grid.azimuths / (2 * kPi)),
+      grid.trips};
 }
 
 /// True for radars with an echo of land or sea.

@@ -17,8 +17,9 @@ PathClutter::PathClutter(const scenario::Snapshot& snapshot, int radar, double r
   if (!task) return;
   task_ = *task;
   // Cells beyond the point do not affect those before it, but by echoes of later trips.
-  task_.grid.ranges = static_cast<int>(range_m_ / static_cast<double>(task_.grid.step_m)) + 2;
-  if (task_.grid.repeat_cells > 0) task_.grid.ranges = std::max(task_.grid.ranges, task_.grid.region_ranges);
+  const EchoTrips& trips = task_.grid.trips;
+  const double farthest_m = trips.count > 1 ? std::max(range_m_, static_cast<double>(trips.end_m)) : range_m_;
+  task_.grid.ranges = static_cast<int>(farthest_m / static_cast<double>(task_.grid.step_m)) + 2;
   post_ranges_m_ = clutterPostRanges(task_.grid, postSpacing_m(terrain));
   task_.ground = groundPosts(terrain, post_ranges_m_);
 }
@@ -46,7 +47,7 @@ ClutterCell PathClutter::cellAt(float azimuth_rad, float range_m) const {
 
 float PathClutter::toNoise(const ClutterTask& task, const EmitterBeam& beam, const Aim& aim) const {
   return onPattern(beam.pattern, [&](auto kind) {
-    return clutterToNoise<kind>(task, *this, beam, aim, static_cast<float>(range_m_));
+    return clutterToNoise<kind>(task, *this, task_.grid.trips, beam, aim, static_cast<float>(range_m_));
   });
 }
 

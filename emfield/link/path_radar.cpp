@@ -66,7 +66,8 @@ class RadarPoint {
       jamming += static_cast<double>(jammer.boresight_to_noise) * received;
     }
     if (!share.task.clutter.isNone()) {
-      jamming += static_cast<double>(clutter_.toNoise(share.task.clutter, beamOf(share), aim));
+      jamming += static_cast<double>(task.heard.powerOf(static_cast<float>(range_m_)) *
+                                     clutter_.toNoise(share.task.clutter, beamOf(share), aim));
     }
     const double root = static_cast<double>(task.echo_root) * boresight_wm2_ * pattern_power *
                         static_cast<double>(task.heard.amplitudeOf(static_cast<float>(range_m_)));

@@ -25,7 +25,7 @@ const std::string& checked(const std::string& file, const std::string& ending, b
 }  // namespace
 
 StreamRecorder::StreamRecorder(const std::string& file, const std::string& ending, bool replaces)
-    : file_(checked(file, ending, replaces)), stream_(file_.temporary(), std::ios::binary) {
+    : file_(checked(file, ending, replaces)), disk_(file_.temporary()) {
   if (ending == ".pcap") capture_ = std::make_unique<interop::dis::CaptureWriter>(stream_);
 }
 
@@ -38,15 +38,27 @@ void StreamRecorder::write(const std::uint8_t* bytes, std::size_t size, double t
   } else {
     stream_.write(reinterpret_cast<const char*>(bytes), static_cast<std::streamsize>(size));
   }
-  if (!stream_) failure_ = file_.file().string() + ": cannot be written on; the recording ends here";
+  constexpr std::streamoff kAtOnce_bytes = 1 << 16;
+  if (stream_.tellp() >= kAtOnce_bytes) append();
+}
+
+void StreamRecorder::append() {
+  const std::string bytes = stream_.str();
+  stream_.str("");
+  try {
+    disk_.append(bytes);
+    written_bytes_ += bytes.size();
+  } catch (const Error& error) {
+    const std::string text = error.what();  // of the temporary file
+    failure_ = file_.file().string() + ": the recording ends here: " + text.substr(text.find("cannot write"));
+    disk_.cut(written_bytes_);
+  }
 }
 
 void StreamRecorder::finish() {
   if (std::exchange(is_finished_, true)) return;
-  stream_.close();
-  if (!stream_ && failure_.empty())
-    failure_ = file_.file().string() + ": cannot be written; the end of the recording is missing";
-  file_.publish();
+  if (failure_.empty()) append();
+  if (failure_.empty() || written_bytes_ > 0) file_.publish();
   if (!failure_.empty()) throw Error(ErrorCode::other, failure_);
 }
 

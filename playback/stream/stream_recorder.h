@@ -1,11 +1,13 @@
 /// Files of what a stream brings.
 #pragma once
 
-#include <fstream>
+#include <cstdint>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "base/files/appended_file.h"
 #include "base/files/unfinished_file.h"
 #include "recording/dis/datagrams.h"
 
@@ -17,14 +19,20 @@ class StreamRecorder {
   /// @throws Error (usage) for another ending or a file that exists, (other)
   StreamRecorder(const std::string& file, const std::string& ending, bool replaces);
   void write(const std::uint8_t* bytes, std::size_t size, double time_s);
-  /// Publishes the file. @throws Error (other), also if the recording ended early
+  /// Publishes the file, unless nothing of it could be written.
+  /// @throws Error (other), also if the recording ended early
   void finish();
   /// Why the recording ended early; empty: it did not.
   const std::string& failure() const { return failure_; }
 
  private:
+  /// Whole records, so that a file which ends early ends with one.
+  void append();
+
   UnfinishedFile file_;
-  std::ofstream stream_;
+  AppendedFile disk_;
+  std::uintmax_t written_bytes_ = 0;
+  std::ostringstream stream_;  ///< what is not on the disk yet
   std::unique_ptr<interop::dis::CaptureWriter> capture_;
   std::vector<std::uint8_t> datagram_;
   std::string failure_;

@@ -143,15 +143,23 @@ std::optional<Waveform> parseWaveform(const Section& section, ParseContext& cont
 }
 
 /// Warns of a receiver whose echo over noise exceeds that of a matched filter, which is P tau / (k T) for
-/// each of the pulses that are summed coherently.
+/// each of the pulses that are summed coherently, or lacks the gain of such a sum.
 void checkBandwidth(const Emitter& radar, const Section& receiver, ParseContext& context) {
   constexpr double kTolerance_db = 1;
   const bool sums = radar.clutter && radar.clutter->mti && radar.clutter->mti->kind == MtiKind::pulse_doppler;
   const double coherent = sums ? radar.clutter->mti->pulses : 1;
   const double excess_db = radar.receiver.processing_gain_db -
                            ratioToDb(radar.receiver.bandwidth_hz * radar.waveform->pulse_width_s * coherent);
-  if (!(excess_db > kTolerance_db)) return;
   const bool has_gain = receiver.has("processing_gain_db");
+  if (sums && !has_gain) {
+    context.problems.addWarning(
+        receiver.location(),
+        fmt::format(
+            "the filter of '{}' sums {} pulses coherently, but 'processing_gain_db' is not given: its "
+            "echoes are those of one pulse. The sum has up to {:.1f} dB, less about 3 by its weights",
+            radar.name, coherent, ratioToDb(coherent)));
+  }
+  if (!(excess_db > kTolerance_db)) return;
   context.problems.addWarning(
       receiver.locationOf(has_gain ? "processing_gain_db" : "bandwidth_hz"),
       fmt::format("the echoes of '{}' are {:.1f} dB above those of a matched filter: a bandwidth of {:g} Hz, "

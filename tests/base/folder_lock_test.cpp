@@ -64,6 +64,22 @@ TEST_P(LockWithoutFlock, LeavesAFileThatIsNoLock) {
   EXPECT_EQ(test::readFile(folder_ / "a.lock"), "of the user");
 }
 
+TEST_P(LockWithoutFlock, NamesAnEmptyFileThatMayBeALock) {
+  folder_.write("a.lock", "");
+  EXPECT_THAT(test::errorOf([&] { FolderLock(folder_.path(), "a.lock"); }, ErrorCode::other),
+              HasSubstr("if no other process writes this folder, remove it"));
+}
+
+TEST(FolderLock, TakesTheEmptyFileOfAProcessThatCouldNotWriteItsName) {
+  const test::TemporaryFolder folder;
+  folder.write("a.lock", "");
+  {
+    const FolderLock lock(folder.path(), "a.lock");
+    EXPECT_THAT(test::readFile(folder / "a.lock"), HasSubstr("lock of emscape, process "));
+  }
+  EXPECT_THAT(folder.files(), IsEmpty());
+}
+
 INSTANTIATE_TEST_SUITE_P(Causes, LockWithoutFlock, testing::Values(ENOLCK, ENOSYS, EOPNOTSUPP, EIO));
 
 }  // namespace

@@ -262,29 +262,6 @@ TEST(ClutterMap, SmoothSeaEqualsClosedForm) {
   EXPECT_EQ(map.at(17, horizon_m + 1000).echo, 0) << "beyond the horizon";
 }
 
-TEST(ClutterMap, HasTheEchoesOfLaterTripsOfAPulse) {
-  const auto scenario =
-      emptyScenario(FrameKind::altitude, kLatitude_deg, kLongitude_deg, {80e3, 80e3, 1000}, {8, 8, 2});
-  scenario::Emitter radar = cluttered(trackingRadar());
-  radar.clutter->sea_state = 4;
-  const FilledMap single = mapOf(*scenario, radar, 200, nullptr);
-  radar.waveform->prf_hz = 299792458.0 / 2 / 12e3;  // 80 cells of 150 m
-  const FilledMap folded = mapOf(*scenario, radar, 200, nullptr);
-  ASSERT_EQ(folded.grid.step_m, 150);
-  for (double range_m = 3075; range_m < 12e3; range_m += 900) {
-    double echo = 0, with_sine = 0;
-    for (double trip_m = range_m; trip_m < 56e3; trip_m += 12e3) {
-      echo += double(single.at(17, trip_m).echo);
-      with_sine += double(single.at(17, trip_m).echo_times_sine);
-    }
-    EXPECT_GT(echo, 1.001 * double(single.at(17, range_m).echo));
-    for (const double same_m : {range_m, range_m + 12e3, range_m + 24e3}) {
-      EXPECT_NEAR(double(folded.at(17, same_m).echo) / echo, 1, 1e-3) << same_m;
-      EXPECT_NEAR(double(folded.at(17, same_m).echo_times_sine) / with_sine, 1, 1e-3) << same_m;
-    }
-  }
-}
-
 /// Ground of one height per distance east of a meridian.
 class Ridges : public MadeTerrain {
  public:
@@ -382,6 +359,43 @@ TEST_P(Clutter, SeaEqualsClosedFormOfItsPatch) {
         expected_db, 0.1)
         << range_m;
   }
+}
+
+TEST_P(Clutter, OfLaterTripsIsSeenByTheBeamTowardsItsOwnSurface) {
+  scenario::Emitter radar = cluttered(trackingRadar());
+  radar.antenna = scenario::makeGaussian(kGain_dbi, 3, 3, -40);
+  radar.clutter->sea_state = 5;
+  const auto clutterAt = [&](double prf_hz) {
+    radar.waveform->prf_hz = prf_hz;
+    const auto scenario = lineWith(radar);
+    const auto snr = field(scenario, "snr_db"), sclnr = field(scenario, "sclnr_db");
+    return [snr, sclnr](double range_m) {
+      return clutterToNoise(double(valueEast(*snr, range_m)), double(valueEast(*sclnr, range_m)));
+    };
+  };
+  const auto single = clutterAt(1000), folded = clutterAt(kSpeedOfLight / 2 / 12e3);
+  for (const double range_m : {2e3, 3e3, 5e3, 8e3, 11e3}) {
+    double sum = 0;
+    for (double trip_m = range_m; trip_m < 40e3; trip_m += 12e3) sum += single(trip_m);
+    for (const double same_m : {range_m, range_m + 12e3})
+      EXPECT_NEAR(ratioToDb(folded(same_m) / sum), 0, 0.05) << same_m;
+  }
+  EXPECT_GT(folded(2e3), 1000 * single(2e3)) << "the beam passes above the nearest surface";
+}
+
+TEST_P(Clutter, IsEclipsedAsTheEchoThatItArrivesWith) {
+  scenario::Emitter radar = cluttered(trackingRadar());
+  radar.waveform->pulse_width_s = 10e-6;  // nothing is heard whole before 1.5 km
+  radar.clutter->sea_state = 6;
+  const auto probabilities = [&](bool limits) {
+    radar.waveform->limits_detection = limits;
+    return field(lineWith(radar), "detection_probability");
+  };
+  const auto eclipsed = probabilities(true), whole = probabilities(false);
+  const double in_clutter = double(valueEast(*whole, 1000));
+  EXPECT_GT(in_clutter, 0.01);
+  EXPECT_LT(in_clutter, 0.99);
+  EXPECT_NEAR(double(valueEast(*eclipsed, 1000)), in_clutter, 1e-3) << "the ratio stays";
 }
 
 TEST_P(Clutter, RainEqualsClosedFormOfItsVolume) {

@@ -138,10 +138,10 @@ TEST(Waveform, PulsesOfADopplerFilterAreNotIntegratedAgain) {
   EXPECT_EQ(filtered(coherent_64, "{kind: pulse_doppler, pulses: 64}"), std::make_pair(1, std::string()));
   EXPECT_EQ(filtered("", "{kind: pulse_doppler, pulses: 16}"), std::make_pair(4, std::string()));
   EXPECT_EQ(filtered("", "{kind: canceller, pulses: 3}"), std::make_pair(62, std::string()));
-  EXPECT_EQ(filtered(", pulses: 4", "{kind: pulse_doppler, pulses: 16}").second, "");
-  EXPECT_THAT(filtered(", pulses: 64", "{kind: pulse_doppler, pulses: 16}").second,
+  EXPECT_EQ(filtered(", pulses: 4, processing_gain_db: 9", "{kind: pulse_doppler, pulses: 16}").second, "");
+  EXPECT_THAT(filtered(", pulses: 64, processing_gain_db: 9", "{kind: pulse_doppler, pulses: 16}").second,
               HasSubstr("gives 64 hits, 4 after its filter of 16 pulses; 64 are integrated all the same"));
-  EXPECT_THAT(filtered("", "{kind: pulse_doppler, pulses: 100}").second,
+  EXPECT_THAT(filtered(", processing_gain_db: 9", "{kind: pulse_doppler, pulses: 100}").second,
               HasSubstr("filter of 'search' has 100 pulses, but one pass of its beam gives 64 hits"));
 }
 
@@ -157,6 +157,8 @@ TEST(Waveform, EchoesAboveAMatchedFilterAreAWarning) {
               HasSubstr("a 'processing_gain_db' of at most 12.0"));
   EXPECT_THAT(warned(", processing_gain_db: 12", "{kind: canceller, pulses: 3}"),
               HasSubstr("12.0 dB above those of a matched filter"));
+  EXPECT_THAT(warned("", "{kind: pulse_doppler, pulses: 16}"),
+              HasSubstr("sums 16 pulses coherently, but 'processing_gain_db' is not given"));
 }
 
 TEST(Waveform, IsRefusedWherePulsesOverlapOrMissTheirCount) {
