@@ -98,12 +98,10 @@ EMSCAPE_HD inline float surfaceToNoise(const ClutterTask& task, const Map& map, 
                                        const Aim& aim, float range_m) {
   const Vec3f direction = axisOf(beam, aim);
   const ClutterCell cell = map.cellAt(fastAtan2(direction.x, direction.y), range_m);
-  constexpr float kMinEcho = 1e-37f;
-  const float sine = cell.echo_times_sine / (cell.echo > kMinEcho ? cell.echo : kMinEcho);
-  const float cosine2 = 1 - sine * sine;
+  const float cosine2 = 1 - cell.sine * cell.sine;
   const float level2 = direction.x * direction.x + direction.y * direction.y;
   const float scale = std::sqrt((cosine2 > 0 ? cosine2 : 0.0f) / (level2 + 1e-12f));
-  const Vec3f to_surface = inAntennaFrame(beam, {direction.x * scale, direction.y * scale, sine});
+  const Vec3f to_surface = inAntennaFrame(beam, {direction.x * scale, direction.y * scale, cell.sine});
   const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, to_surface);
   const float power = amplitude * amplitude;
   const float widening = std::sqrt(1 - aim.steer_v * aim.steer_v) / cosineOfSteering(aim);

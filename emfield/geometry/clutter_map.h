@@ -26,11 +26,11 @@
 namespace emscape::emfield {
 
 /// A cell of the map: the sum over the surface of cross section over range^4, per radian of azimuth and in
-/// one range cell of the radar, with the two-way loss of the atmosphere (1 / (m2 rad)); and the same sum
-/// weighted by the sine of the ray's elevation.
+/// one range cell of the radar, with the two-way loss of the atmosphere (1 / (m2 rad)); and the sine of the
+/// ray's elevation, weighted by it, of cells without an echo that of a neighbour.
 struct ClutterCell {
   float echo = 0;
-  float echo_times_sine = 0;
+  float sine = 0;
 };
 
 /// Slant ranges from which echoes arrive together: they differ by whole unambiguous ranges.
@@ -101,8 +101,7 @@ struct ClutterMapView {
     const int a = rows.first * ranges + columns.first, b = rows.first * ranges + columns.second;
     const int c = rows.second * ranges + columns.first, d = rows.second * ranges + columns.second;
     return {mixed(cells[a].echo, cells[b].echo, cells[c].echo, cells[d].echo, rows.weight, columns.weight),
-            mixed(cells[a].echo_times_sine, cells[b].echo_times_sine, cells[c].echo_times_sine,
-                  cells[d].echo_times_sine, rows.weight, columns.weight)};
+            mixed(cells[a].sine, cells[b].sine, cells[c].sine, cells[d].sine, rows.weight, columns.weight)};
   }
 };
 
@@ -144,9 +143,22 @@ struct ClutterMapTask {
       }
       before = here;
     });
+    normalize(row);
   }
 
  private:
+  /// From sums weighted by the echo to means.
+  EMSCAPE_HD void normalize(ClutterCell* row) const {
+    int first = 0;
+    while (first < grid.ranges && !(row[first].echo > 0)) ++first;
+    if (first == grid.ranges) return;
+    float sine = row[first].sine / row[first].echo;
+    for (int n = 0; n < grid.ranges; ++n) {
+      if (row[n].echo > 0) sine = row[n].sine / row[n].echo;
+      row[n].sine = sine;
+    }
+  }
+
   struct Post {
     double range_m = 0, height_msl_m = 0, slant_m = 0;
     SurfaceFace face;
@@ -182,7 +194,7 @@ struct ClutterMapTask {
                           std::pow(10.0, -0.2 * static_cast<double>(air_db_per_m) * range_m) *
                           static_cast<double>(grid.part_of_step);
       row[n].echo += static_cast<float>(echo);
-      row[n].echo_times_sine -= static_cast<float>(echo * depth_m / range_m);
+      row[n].sine -= static_cast<float>(echo * depth_m / range_m);  // its mean is taken at the end
     }
   }
 };

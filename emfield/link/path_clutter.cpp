@@ -42,7 +42,7 @@ ClutterCell PathClutter::cellAt(float azimuth_rad, float range_m) const {
     return mixed(near_row[columns.first].*value, near_row[columns.second].*value,
                  far_row[columns.first].*value, far_row[columns.second].*value, rows.weight, columns.weight);
   };
-  return {mix(&ClutterCell::echo), mix(&ClutterCell::echo_times_sine)};
+  return {mix(&ClutterCell::echo), mix(&ClutterCell::sine)};
 }
 
 float PathClutter::toNoise(const ClutterTask& task, const EmitterBeam& beam, const Aim& aim) const {
