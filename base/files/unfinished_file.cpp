@@ -104,8 +104,14 @@ void UnfinishedFile::makeOwnFolder() {
     failed = ::mkdirat(folder_.number(), own_name_.c_str(), 0700);
   } while (failed != 0 && errno == EEXIST);
   if (failed == 0) own_folder_ = openInnerFolder(folder_, own_name_);
-  if (!own_folder_.isOpen()) failWriting(file_, causeOf(errno));
-  record_ = createFile(own_folder_, file_.parent_path() / kRecordName, O_RDWR);
+  if (!own_folder_.isOpen()) {
+    const int cause = errno;
+    if (failed == 0) ::unlinkat(folder_.number(), own_name_.c_str(), AT_REMOVEDIR);
+    failWriting(file_, causeOf(cause));
+  }
+  record_ = Descriptor(
+      ::openat(own_folder_.number(), kRecordName, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
+  if (!record_.isOpen()) failWriting(file_, causeOf(errno));
   // Locked before it states anything. Where files cannot be locked it stays empty, which proves nothing.
   if (::flock(record_.number(), LOCK_EX | LOCK_NB) == 0) writeBytes(record_, recordOf(own_name_), file_);
 }

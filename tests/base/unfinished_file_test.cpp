@@ -3,8 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "base/files/whole_file.h"
+#include "emscape/base/error.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/unfinished_files.h"
@@ -13,7 +16,9 @@ namespace emscape {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
@@ -52,6 +57,30 @@ TEST(UnfinishedFile, HasThePermissionsOfTheFileThatItReplaces) {
   writeWhole(folder / "a.csv", [](std::ostream& stream) { stream << "new"; });
   EXPECT_EQ(fs::status(folder / "a.csv").permissions(), own);
   EXPECT_EQ(test::readFile(folder / "a.csv"), "new");
+}
+
+TEST(UnfinishedFile, LeavesNothingWhenDescriptorsRunOut) {
+  const test::TemporaryFolder folder;
+  rlimit limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &limit), 0);
+  const int next = ::dup(0);  // the lowest free number
+  ASSERT_GE(next, 0);
+  ::close(next);
+  for (int more = 0; more < 4; ++more) {
+    const rlimit few{static_cast<rlim_t>(next + more), limit.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+    std::string error;
+    try {
+      const UnfinishedFile file(folder / "a.tif");
+    } catch (const Error& failed) {
+      error = failed.what();
+    }
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+    if (more < 3) {
+      EXPECT_THAT(error, AllOf(HasSubstr("a.tif"), HasSubstr("Too many open files"))) << more;
+    }
+    EXPECT_THAT(folder.files(), IsEmpty()) << more;
+  }
 }
 
 TEST(UnfinishedFile, LeavesNothingUnlessPublished) {
