@@ -43,10 +43,11 @@ std::string clutterText(const scenario::Scenario& scenario, const scenario::Emit
     text = fmt::format("{:g} m high along the path", height_m);
   if (propagation::hasTerminalClutter(emitterInputs(scenario, emitter)))
     text += fmt::format(
-        "{}ITU-R P.2108-1 (3.2) at {} up to {:g} m above the ground, {:g} % of locations{}",
+        "{}ITU-R P.2108-1 (3.2) at {} up to {:g} m above the ground, {:g} % of locations{}{}",
         text.empty() ? "" : "; ",
         ground.terminal_clutter_ends == propagation::ClutterEnds::both ? "both ends" : "receivers",
         ground.terminal_clutter_below_m, ground.terminal_clutter_percent,
+        ground.terminal_clutter_ends == propagation::ClutterEnds::both ? " of each" : "",
         ground.terminal_clutter_combine == propagation::ClutterCombination::larger
             ? ", or the loss by terrain if that is larger"
             : "");
@@ -80,8 +81,9 @@ std::vector<std::string> clutterWarnings(const scenario::Scenario& scenario,
   } else if (model == PropagationModel::p528 || model == PropagationModel::parabolic_equation) {
     warn(fmt::format("'terminal_clutter' of 'ground' is not used by '{}'", toString(model)));
   } else if (!propagation::kP2108Frequency.holds(emitter.frequency_hz)) {
-    warn(fmt::format("'terminal_clutter' of 'ground': {}",
-                     propagation::outsideMessage(propagation::kP2108Frequency, emitter.frequency_hz)));
+    warn(fmt::format(
+        "'terminal_clutter' of 'ground' is not used: the frequency {:g} GHz is outside {:g}..{:g} GHz",
+        emitter.frequency_hz / 1e9, propagation::kP2108Frequency.min, propagation::kP2108Frequency.max));
   }
   return warnings;
 }

@@ -141,12 +141,13 @@ std::vector<std::string> lowEndWarnings(const Emitter& emitter, double emitter_a
   const std::optional<double> lowest_m = lowestHeight_m(emitter.propagation.model);
   std::vector<std::string> warnings;
   const auto check = [&](const char* end, double height_agl_m) {
-    if (!lowest_m || !(height_agl_m < *lowest_m - kRounding_m)) return;
+    // What is below a model's surface is warned of as such.
+    if (!lowest_m || height_agl_m < 0 || !(height_agl_m < *lowest_m - kRounding_m)) return;
     warnings.push_back(fmt::format(
         "emitter '{}': {} is {:.2g} m above the ground; '{}' takes it as {:g} m high, and its loss is too "
         "low, "
         "by up to 20 lg of the ratio of the heights where waves graze the ground",
-        emitter.name, end, std::max(height_agl_m, 0.0), toString(emitter.propagation.model), *lowest_m));
+        emitter.name, end, height_agl_m, toString(emitter.propagation.model), *lowest_m));
   };
   check("its antenna", emitter_agl_m);
   check("the point", point_agl_m);

@@ -91,8 +91,9 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
     double loss_db = static_cast<double>(terminal.lossDb(static_cast<float>(profile.range_m), end_agl_m));
     if (terminal.is_larger) loss_db = std::max(loss_db - excess.loss_db, 0.0);
     excess.add("terminal_clutter",
-               fmt::format("clutter around {} (P.2108-1, {:g} % of locations{})",
+               fmt::format("clutter around {} (P.2108-1, {:g} % of locations{}{})",
                            ends > 1 ? "both ends" : "one end", scenario.ground.terminal_clutter_percent,
+                           ends > 1 ? " of each" : "",
                            terminal.is_larger ? ", what it has more than the terrain" : ""),
                loss_db);
     excess.clutter_db += loss_db;

@@ -44,7 +44,10 @@ std::string valueText(double value) {
 
 std::string remarkOf(const PathObstacle& obstacle) {
   std::string remark = obstacle.is_earth_bulge ? "earth's bulge" : "";
-  if (obstacle.decides) remark += remark.empty() ? "decides" : "  decides";
+  if (obstacle.decides) {
+    const char* const what = obstacle.clearanceInFresnelRadii() < 1 ? "decides" : "nearest to the ray";
+    remark += (remark.empty() ? "" : "  ") + std::string(what);
+  }
   return remark;
 }
 
