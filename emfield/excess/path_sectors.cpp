@@ -18,6 +18,16 @@ double sineBetween(const PathSectors::Azimuth& from, const PathSectors::Azimuth&
 
 }  // namespace
 
+int PathSectors::countFor(const GroundPosts& ground, std::size_t paths) {
+  constexpr double kWidth_posts = 1.5, kPathsPerSector = 32, kMinSectors = 360;
+  if (ground.range_count < 2) return 0;
+  const double farthest_m = ground.ranges_m[ground.range_count - 1];
+  const double step_m = farthest_m - ground.ranges_m[ground.range_count - 2];
+  const double count =
+      std::min(8 * farthest_m / (kWidth_posts * step_m), static_cast<double>(paths) / kPathsPerSector);
+  return count < kMinSectors ? 0 : static_cast<int>(count);
+}
+
 // Within a quadrant sectors divide sin / (sin + cos) evenly, which takes no arc tangent.
 int PathSectors::sectorOf(double sin_azimuth, double cos_azimuth) const {
   const double east = std::fabs(sin_azimuth), north = std::fabs(cos_azimuth);

@@ -21,6 +21,10 @@ struct SectorPath {
 /// Immutable once made.
 class PathSectors {
  public:
+  /// Number of sectors for some paths: none wider than a part of the post spacing. 0: the paths are too few
+  /// for a search by sectors.
+  static int countFor(const GroundPosts& ground, std::size_t paths);
+
   /// Columns that are left out or without ground are in no sector.
   /// @param count  number of sectors around the station, rounded up to a multiple of 4. They differ in width,
   /// but none is wider than 8 / count (rad)

@@ -191,12 +191,7 @@ SectorTerrain::SectorTerrain(const Station& station, const GroundPosts& ground, 
 
 void SectorTerrain::readBlock(int block, float aside, float* height_msl_m) const {
   const SectorChord& of_block = chords_[block / posts_.blocksPerChord()];
-  const auto along = [aside](const Parabola<float>* of) {
-    Parabola<float> here;
-    for (int n = 0; n < 3; ++n) here.c[n] = of[0].c[n] + aside * (of[1].c[n] + aside * of[2].c[n]);
-    return here;
-  };
-  const Parabola<float> column = along(of_block.column), row = along(of_block.row);
+  const Parabola<float> column = alongPath(of_block.column, aside), row = alongPath(of_block.row, aside);
   const float* const parts = posts_.part() + block * kBlock;
   const int count = std::min(kBlock, posts_read_ - block * kBlock);
   for (int i = 0; i < count; ++i) {

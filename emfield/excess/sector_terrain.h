@@ -70,6 +70,13 @@ struct SectorChord {
   const float* corner_msl_m;
 };
 
+/// The parabola of one path. @param of  SectorChord::column or row
+inline Parabola<float> alongPath(const Parabola<float>* of, float aside) {
+  Parabola<float> here;
+  for (int n = 0; n < 3; ++n) here.c[n] = of[0].c[n] + aside * (of[1].c[n] + aside * of[2].c[n]);
+  return here;
+}
+
 /// The terrain of one sector at a time; each thread has its own object.
 class SectorTerrain {
  public:

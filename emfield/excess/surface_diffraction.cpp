@@ -199,12 +199,8 @@ class Search {
     const SectorPosts& of_sectors = *posts_.of_sectors;
     const int index = block / of_sectors.blocksPerChord();
     const SectorChord& chord = terrain_.chord(index);
-    const auto at = [s = path_.aside](const Parabola<float>* of) {
-      Parabola<float> here;
-      for (int n = 0; n < 3; ++n) here.c[n] = of[0].c[n] + s * (of[1].c[n] + s * of[2].c[n]);
-      return here;
-    };
-    const Parabola<float> column = at(chord.column), row = at(chord.row);
+    const Parabola<float> column = alongPath(chord.column, path_.aside),
+                          row = alongPath(chord.row, path_.aside);
     const float first_m = posts_.first_m[block];
     const float length_m = std::min(posts_.last_m[block], path_.last_m) - first_m;
     const float first_part = of_sectors.firstPart()[block];
@@ -509,27 +505,15 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
   setLosses(sector, memory);
 }
 
-/// Number of sectors: none wider than a part of the post spacing, and not too many for the number of paths.
-int sectorsOf(const ExcessTask<propagation::DiffractionExcess>& task) {
-  constexpr double kWidth_posts = 1.5;
-  constexpr std::size_t kPathsPerSector = 32;
-  const GroundPosts& ground = task.ground;
-  const double farthest_m = ground.ranges_m[ground.range_count - 1];
-  const double step_m = farthest_m - ground.ranges_m[ground.range_count - 2];
-  const double widest_rad = kWidth_posts * step_m / farthest_m;
-  return static_cast<int>(
-      std::min(8 / widest_rad, static_cast<double>(task.grid.column_count / kPathsPerSector)));
-}
-
 }  // namespace
 
 std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::DiffractionExcess>& task,
                                          const TerrainBounds& bounds, const ExcessOutput& out) {
-  constexpr int kMinSectors = 360;
   std::vector<char> is_left(task.grid.column_count, 1);
   const SectorPosts sector_posts(task.station, task.ground);
-  if (!sector_posts.isUsable() || sectorsOf(task) < kMinSectors) return is_left;
-  const PathSectors sectors(task.station, task.grid, sectorsOf(task));
+  const int sector_count = PathSectors::countFor(task.ground, task.grid.column_count);
+  if (!sector_posts.isUsable() || sector_count == 0) return is_left;
+  const PathSectors sectors(task.station, task.grid, sector_count);
 
   const int blocks = sector_posts.blocks(), groups = groupsOf(blocks);
   std::vector<float> group_first_m, group_last_m, first_m, last_m;

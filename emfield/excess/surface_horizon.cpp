@@ -76,16 +76,6 @@ bool areAlike(const ExcessGrid& grid, float lower_m, float upper_m) {
   return true;
 }
 
-/// Number of sectors: none wider than a part of the post spacing, and not too many for the number of paths.
-int sectorsOf(const GroundPosts& ground, std::size_t paths) {
-  constexpr double kWidth_posts = 1.5;
-  constexpr std::size_t kPathsPerSector = 32;
-  const double farthest_m = ground.ranges_m[ground.range_count - 1];
-  const double step_m = farthest_m - ground.ranges_m[ground.range_count - 2];
-  return static_cast<int>(
-      std::min(8 * farthest_m / (kWidth_posts * step_m), static_cast<double>(paths / kPathsPerSector)));
-}
-
 /// A range that contains the steepest slope to the posts of a path.
 struct SlopeRange {
   float low, high;
@@ -167,11 +157,11 @@ class SectorShadows {
 
 std::vector<char> findSurfaceShadows(const ShadowTask& task, const ExcessGrid& grid,
                                      const TerrainBounds& bounds, float* edges_m) {
-  constexpr int kMinSectors = 360;
   std::vector<char> is_left(grid.column_count, 1);
   const SectorPosts posts(task.station, task.ground);
-  if (!posts.isUsable() || sectorsOf(task.ground, grid.column_count) < kMinSectors) return is_left;
-  const PathSectors sectors(task.station, grid, sectorsOf(task.ground, grid.column_count));
+  const int sector_count = PathSectors::countFor(task.ground, grid.column_count);
+  if (!posts.isUsable() || sector_count == 0) return is_left;
+  const PathSectors sectors(task.station, grid, sector_count);
   ObstacleTerms obstacles{task.geometry(), {}, {}};
   for (const int post : posts.postsInGroups()) {
     constexpr float kMore = 1.02f;  // of heights of +-40 km

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#if defined(__GNUC__) && defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 #include "base/math/simd.h"
 #include "emfield/ground/chord_crossings.h"
@@ -29,63 +34,129 @@ struct PostStore {
   float* height_msl_m;
 };
 
+/// Crossings in the order of their parts.
+struct Crossings {
+  float *part, *height_msl_m;
+};
+
+/// Memory of a thread for one chord.
+struct ChordMemory {
+  Crossings columns{}, rows{}, all{};
+  std::vector<char> is_column;  ///< per place: whether a column or a row is crossed there
+
+  /// @param count  of all arrays
+  void reset(int count) {
+    const auto size = static_cast<std::size_t>(count);
+    if (numbers_.size() < 6 * size) numbers_.resize(6 * size);
+    float* next = numbers_.data();
+    for (Crossings* const crossings : {&columns, &rows, &all}) {
+      *crossings = {next, next + size};
+      next += 2 * size;
+    }
+    is_column.assign(size, 0);
+  }
+
+ private:
+  std::vector<float> numbers_;
+};
+
+/// Puts the crossings of a chord with columns and rows in one order. @param count  of both
+void merge(const ChordMemory& of, int count) {
+  for (int i = 0, column = 0; i < count; ++i) {
+    const bool is_column = of.is_column[static_cast<std::size_t>(i)] != 0;
+    const Crossings& from = is_column ? of.columns : of.rows;
+    const int next = is_column ? column++ : i - column;
+    of.all.part[i] = from.part[next];
+    of.all.height_msl_m[i] = from.height_msl_m[next];
+  }
+}
+
+#if defined(__GNUC__) && defined(__x86_64__)
+/// The same, 16 at a time: a third of the time.
+__attribute__((target("avx512f,popcnt"))) void mergeAvx512(const ChordMemory& of, int count) {
+  for (int i = 0, column = 0; i < count; i += 16) {
+    const __m512i is_column = _mm512_maskz_cvtepi8_epi32(
+        0xffff, _mm_loadu_si128(reinterpret_cast<const __m128i*>(of.is_column.data() + i)));
+    const unsigned here = count - i < 16 ? (1u << (count - i)) - 1 : 0xffffu;
+    const auto columns = static_cast<__mmask16>(_mm512_test_epi32_mask(is_column, is_column) & here);
+    const auto rows = static_cast<__mmask16>(here & ~columns);
+    const int row = i - column;
+    __m512 part = _mm512_maskz_expandloadu_ps(columns, of.columns.part + column);
+    part = _mm512_mask_expandloadu_ps(part, rows, of.rows.part + row);
+    __m512 height_msl_m = _mm512_maskz_expandloadu_ps(columns, of.columns.height_msl_m + column);
+    height_msl_m = _mm512_mask_expandloadu_ps(height_msl_m, rows, of.rows.height_msl_m + row);
+    _mm512_storeu_ps(of.all.part + i, part);
+    _mm512_storeu_ps(of.all.height_msl_m + i, height_msl_m);
+    column += __builtin_popcount(columns);
+  }
+}
+const auto mergeCrossings = __builtin_cpu_supports("avx512f") ? mergeAvx512 : merge;
+#else
+constexpr auto mergeCrossings = merge;
+#endif
+
 /// The crossings of a chord, in their order. @return false if one is beside a void
 EMSCAPE_SIMD_CLONES bool readCrossings(const ChordCrossings& of, double begin_m, double chord_m,
-                                       double receivers_m, const PostStore& to) {
+                                       double receivers_m, ChordMemory& memory, const PostStore& to) {
   constexpr int kLanes = 16;            // all computed, so that no loop has a remainder
   const ChordCrossings crossings = of;  // stores do not change it
-  double* const range_m = to.range_m - 1;
-  float* const height_msl_m = to.height_msl_m - 1;
-  const int count = crossings.count();
-  for (int i = 1; i <= count; ++i) range_m[i] = -1;
-  const auto readLines = [&](int lines, const auto& at) {
+  const int count = crossings.count(), columns = crossings.columns.count, rows = crossings.rows.count;
+  memory.reset(count + kLanes);
+  char* const is_column = memory.is_column.data();
+  const auto readLines = [&](int lines, const Crossings& into, const auto& at, const auto& usePlaces) {
+    float *const parts = into.part, *const heights_msl_m = into.height_msl_m;
     for (int first = 0; first < lines; first += kLanes) {
-      double lane_range_m[kLanes];
-      float part[kLanes], lane_msl_m[kLanes];
       int place[kLanes];
 #pragma omp simd
       for (int n = 0; n < kLanes; ++n) {
         const Crossing crossing = at(first + n < lines ? first + n : lines - 1);
-        part[n] = crossing.part;
-        lane_msl_m[n] = crossing.height_msl_m;
+        parts[first + n] = crossing.part;
+        heights_msl_m[first + n] = crossing.height_msl_m;
         place[n] = crossing.place;
       }
-#pragma omp simd
-      for (int n = 0; n < kLanes; ++n) {
-        lane_range_m[n] = crossingRange_m(begin_m, chord_m, part[n], receivers_m);
-      }
-      for (int n = 0; n < std::min(kLanes, lines - first); ++n) {
-        range_m[place[n]] = lane_range_m[n];
-        height_msl_m[place[n]] = lane_msl_m[n];
-      }
+      usePlaces(place, std::min(kLanes, lines - first));
     }
   };
-  const int columns = crossings.columns.count, rows = crossings.rows.count;
+  const auto ofColumns = [&](const int* place, int places) {
+    for (int n = 0; n < places; ++n) is_column[place[n] - 1] = 1;
+  };
+  const auto ofRows = [](const int*, int) {};  // the rest
   if (crossings.columns.is_straight) {
-    readLines(columns, [&](int n) { return crossings.atColumn<true>(n); });
+    readLines(
+        columns, memory.columns, [&](int n) { return crossings.atColumn<true>(n); }, ofColumns);
   } else {
-    readLines(columns, [&](int n) { return crossings.atColumn(n); });
+    readLines(
+        columns, memory.columns, [&](int n) { return crossings.atColumn(n); }, ofColumns);
   }
   if (crossings.rows.is_straight) {
-    readLines(rows, [&](int n) { return crossings.atRow<true>(n); });
+    readLines(
+        rows, memory.rows, [&](int n) { return crossings.atRow<true>(n); }, ofRows);
   } else {
-    readLines(rows, [&](int n) { return crossings.atRow(n); });
+    readLines(
+        rows, memory.rows, [&](int n) { return crossings.atRow(n); }, ofRows);
   }
-  int empty = 0;
-#pragma omp simd reduction(+ : empty)
-  for (int i = 1; i <= count; ++i) empty += range_m[i] < 0 ? 1 : 0;
-  for (int i = 1; empty > 0 && i <= count; ++i) {  // at posts of the raster
-    if (range_m[i] >= 0) continue;
-    --empty;
-    range_m[i] = i > 1 ? range_m[i - 1] : crossingRange_m(begin_m, chord_m, 0, receivers_m);
-    height_msl_m[i] = i > 1
-                          ? height_msl_m[i - 1]
-                          : bilinearHeight(crossings.corner_msl_m, crossings.row_posts,
-                                           crossings.columns.coordinate.c[0], crossings.rows.coordinate.c[0]);
+  int places = 0;
+#pragma omp simd reduction(+ : places)
+  for (int i = 0; i < count; ++i) places += is_column[i];
+  if (places < columns) {  // at posts of the raster two may have the same place
+    std::fill_n(is_column, count, 0);
+    for (int n = 0, place = 0; n < columns; ++n) {
+      place = std::max(crossings.atColumn(n).place, place + 1);
+      is_column[place - 1] = 1;
+    }
   }
+  mergeCrossings(memory, count);
   float unknown = 0;
+  const float *const parts = memory.all.part, *const heights_msl_m = memory.all.height_msl_m;
+  double* const range_m = to.range_m;
+  float* const to_msl_m = to.height_msl_m;
 #pragma omp simd reduction(+ : unknown)
-  for (int i = 1; i <= count; ++i) unknown += height_msl_m[i] - height_msl_m[i];
+  for (int i = 0; i < count; ++i) {
+    range_m[i] = crossingRange_m(begin_m, chord_m, parts[i], receivers_m);
+    const float here = heights_msl_m[i];
+    to_msl_m[i] = here;
+    unknown += here - here;
+  }
   return !std::isnan(unknown);
 }
 
@@ -130,6 +201,7 @@ void readPostsBetweenCpu(const Station& station, const GroundPosts& ground, cons
 
 int readProfileCpu(const Station& station, const GroundPosts& ground, const FastInverse& path,
                    bool at_crossings, double* range_m, float* height_msl_m) {
+  thread_local ChordMemory memory;
   constexpr int kMaxNear = 128;  // of posts at a tenth of the range from 2 m to 3 spacings
   const int regular = ground.lastBefore(path.distance_m) + 1;
   if (ground.is_smooth || !at_crossings) {
@@ -154,7 +226,7 @@ int readProfileCpu(const Station& station, const GroundPosts& ground, const Fast
       const int near = index > 0 ? 0 : std::clamp(ground.near_count, 1, std::min(end, kMaxNear)) - 1;
       float near_msl_m[kMaxNear];
       if (crossings.count() <= ground.maxCrossings(chord_m) &&
-          readCrossings(crossings, begin_m, chord_m, path.distance_m,
+          readCrossings(crossings, begin_m, chord_m, path.distance_m, memory,
                         {range_m + count + near, height_msl_m + count + near}) &&
           readInRaster(chord.in_raster, ground.ranges_m + 1, near, near_msl_m)) {
         insert(ground.ranges_m + 1, near_msl_m, near, crossings.count(),

@@ -1,6 +1,7 @@
 #include "propagation/itm/excess.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/math/simd.h"
 #include "propagation/itm/column.h"
@@ -18,14 +19,24 @@ bool isItmUnknown(const TerrainProfile& profile) {
 
 }  // namespace
 
-/// The same as the loop over single posts, in parts of which the intervals are found first.
+/// The same as the loop over single posts, in parts of which the intervals are found first: among the far
+/// posts, which are equally far apart, from the spacing.
 inline void ItmExcess::spaceEvenlyInLanes(const TerrainProfile& profile, int intervals,
                                           float* heights_msl_m) {
   constexpr int kPart = 64;
   const double* const ranges_m = profile.range_m;
   const float* const posts_msl_m = profile.height_msl_m;
-  const int last = profile.count - 1;
+  const int last = profile.count - 1, last_even = last - 1;
   const double length_m = ranges_m[last];
+  const double step_m = last > 2 ? ranges_m[last_even] - ranges_m[last_even - 1] : 1, per_step = 1 / step_m;
+  int even = 0;  // the first of the far posts
+#pragma omp simd reduction(max : even)
+  for (int i = 0; i < last_even; ++i) {
+    const double even_m = ranges_m[last_even] - step_m * (last_even - i);
+    const int beyond = std::fabs(even_m - ranges_m[i]) < 0.01 * step_m ? 0 : i + 1;
+    even = beyond > even ? beyond : even;
+  }
+  const double even_m = ranges_m[even];
   int after = 1;
   for (int first = 0; first <= intervals; first += kPart) {
     const int count = std::min(kPart, intervals + 1 - first);
@@ -33,9 +44,19 @@ inline void ItmExcess::spaceEvenlyInLanes(const TerrainProfile& profile, int int
     int after_of[kPart];
 #pragma omp simd
     for (int n = 0; n < count; ++n) at_m[n] = length_m * (first + n) / intervals;
-    for (int n = 0; n < count; ++n) {
-      while (after < last && ranges_m[after] < at_m[n]) ++after;
-      after_of[n] = after;
+    if (at_m[0] > even_m) {
+#pragma omp simd
+      for (int n = 0; n < count; ++n) {
+        const int steps = even + static_cast<int>((at_m[n] - even_m) * per_step);
+        const int nearest = steps < last_even ? steps + 1 : last_even;  // or one of its neighbours
+        const int more = ranges_m[nearest] < at_m[n] ? 1 : 0, less = ranges_m[nearest - 1] < at_m[n] ? 0 : 1;
+        after_of[n] = nearest + more - less;
+      }
+    } else {
+      for (int n = 0; n < count; ++n) {
+        while (after < last && ranges_m[after] < at_m[n]) ++after;
+        after_of[n] = after;
+      }
     }
 #pragma omp simd
     for (int n = 0; n < count; ++n) {

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "base/math/simd.h"
 #include "emscape/base/host_device.h"
 #include "propagation/itm/path.h"
 
@@ -251,14 +252,20 @@ EMSCAPE_HD Real irregularityBetween_m(const ItmProfile<Height>& profile, double 
   // positions in posts, in fixed point: 32 bits for the fraction
   constexpr double kOne = 4294967296.0;
   const auto spacing = static_cast<long long>((end - begin) / (samples - 1) * kOne);
-  auto at = static_cast<long long>(begin * kOne);
-  for (int i = 0; i < samples; ++i, at += spacing) {
-    int post = static_cast<int>(at >> 32);
-    if (post >= profile.intervals) post = profile.intervals - 1;
-    const Real fraction = Real(at - (static_cast<long long>(post) << 32)) * Real(1 / kOne);
+  const auto first = static_cast<long long>(begin * kOne);
+  const auto heightAt = [&](int post, Real fraction) {
     const Real here_m = profile.heights_msl_m[post];
-    above_m[i] = here_m + (Real(profile.heights_msl_m[post + 1]) - here_m) * fraction;
+    return here_m + (Real(profile.heights_msl_m[post + 1]) - here_m) * (fraction * Real(1 / kOne));
+  };
+  EMSCAPE_SIMD()
+  for (int i = 0; i < samples - 1; ++i) {
+    const long long at = first + i * spacing;
+    above_m[i] = heightAt(static_cast<int>(at >> 32), Real(static_cast<unsigned>(at)));
   }
+  const long long at_end = first + (samples - 1) * spacing;
+  const int post = static_cast<int>(at_end >> 32), last_interval = profile.intervals - 1;
+  const int of_end = post < last_interval ? post : last_interval;
+  above_m[samples - 1] = heightAt(of_end, Real(at_end - (static_cast<long long>(of_end) << 32)));
   const FittedLine<Real> line = fitLine<Real>(above_m, samples - 1, 0, samples - 1);
   const Real slope_m = (line.at_end_m - line.at_start_m) / (samples - 1);
   for (int i = 0; i < samples; ++i) above_m[i] -= line.at_start_m + slope_m * i;

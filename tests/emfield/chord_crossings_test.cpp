@@ -225,6 +225,25 @@ TEST(ProfileAtCrossings, IsInOrderBetweenItsEndsAndFitsItsMemory) {
   }
 }
 
+TEST(ProfileAtCrossings, HasTheHeightOfTheGroundAtEveryRange) {
+  const MadeTerrain terrain(44.5, -71.5, 1.0);
+  int posts = 0;
+  for (const RandomPath& path : randomPaths(terrain, 0.45, 100)) {
+    const PathProfile profile = profileOf(terrain, path, true);
+    const Station station = makeStation(path.begin.position, path.begin.height_msl_m, 4.0 / 3);
+    FastInverse to;
+    to.distance_m = profile.range_m;
+    to.sin_azimuth = std::sin(profile.azimuth_rad);
+    to.cos_azimuth = std::cos(profile.azimuth_rad);
+    const scenario::TerrainView view = terrain.view();
+    TerrainWalk walk(station, view, to);
+    for (int i = 0; i + 1 < profile.count(); ++i, ++posts) {
+      ASSERT_NEAR(profile.ground_msl_m[i], walk.heightAt(profile.ranges_m[i]), 0.1) << profile.ranges_m[i];
+    }
+  }
+  EXPECT_GT(posts, 50000);
+}
+
 TEST(ProfileAtCrossings, ReadsRegularPostsBesideAVoid) {
   const MadeTerrain terrain(44.5, -71.5, 1.0, 0.1);
   int unknown = 0;
