@@ -68,6 +68,7 @@ report::Json blockageJson(const Blockage& blockage, const BlockageAreas& areas) 
           {"unknown_area_km2", areas.unknown_m2 / 1e6},
           {"cut_by_a_tenth_km2", areas.cut_m2 / 1e6},
           {"cut_by_half_km2", areas.half_cut_m2 / 1e6},
+          {"clutter", "none (bare ground)"},
           {"warnings", blockage.warnings}};
 }
 
@@ -78,7 +79,7 @@ std::string blockageText(const Blockage& blockage, const BlockageAreas& areas) {
   };
   return fmt::format(
       "'{}' at {:.1f} m: beam of {:.3g} deg at {:.3g} deg elevation, to {:.4g} km\n"
-      "cut by 10 % or more: {}\ncut by half or more:  {}{}\n",
+      "cut by 10 % or more: {}\ncut by half or more:  {}{}\nclutter: none (bare ground)\n",
       blockage.emitter, blockage.station_msl_m, blockage.beamwidth_deg, blockage.elevation_deg,
       blockage.range_m() / 1000, share(areas.cut_m2), share(areas.half_cut_m2),
       areas.unknown_m2 > 0 ? fmt::format("; {:.1f} km2 unknown", areas.unknown_m2 / 1e6) : "");

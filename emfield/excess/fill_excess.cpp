@@ -8,6 +8,7 @@
 
 #include "base/math/simd.h"
 #include "emfield/excess/surface_diffraction.h"
+#include "emfield/ground/read_cover.h"
 #include "emfield/ground/read_posts.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/work.h"
@@ -37,6 +38,12 @@ struct ProfileReader {
     constexpr bool at_crossings = propagation::ReadsCrossings<Model>::value;
     return readProfileCpu(station, ground, path, at_crossings, range_m, height_msl_m);
   }
+  void readCover(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                 const double* range_m, const float* ground_msl_m, int count, float* cover_m) const {
+    readCoverCpu(station, ground, path, classes, range_m, ground_msl_m, count, cover_m);
+  }
+
+  const ClassCovers& classes;
 };
 
 /// Fills the columns whose paths need not be read whole, where there is a search for that.
@@ -54,6 +61,8 @@ template <class Model>
 unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const ExcessOutput& out) {
   const ExcessGrid& grid = task.grid;
   const std::vector<char> is_left = fillBySearch(task, bounds, out);
+  const ClassCovers classes(task.ground.terrain.cover);
+  const ProfileReader<Model> reader{classes};
   const auto isLeft = [&](std::size_t column) {
     return (is_left.empty() || is_left[column] != 0) && grid.part.contains(grid.dims, column);
   };
@@ -83,7 +92,7 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
           setAll(NAN);
           of_column = kMissingTerrain;
         } else {
-          of_column = task.fillColumn(column, scratch, ProfileReader<Model>{}, out.reflected, out.mechanisms);
+          of_column = task.fillColumn(column, scratch, reader, out.reflected, out.mechanisms);
         }
         if (of_column & kMissingTerrain) out.markUnknown(column);
         warnings |= of_column;
@@ -162,8 +171,9 @@ unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, cons
         using Model = std::decay_t<decltype(m)>;
         ExcessTask<Model> task{m, excess.air, station, grid, ground, excess.terminal};
         task.ground.is_raised = excess.is_raised && ground.terrain.hasCover();
-        // The bounds are those of bare ground.
-        return fill(task, task.ground.is_raised ? nullptr : bounds, out);
+        const bool is_bounded =
+            bounds != nullptr && (!task.ground.is_raised || bounds->highestCover_m() != nullptr);
+        return fill(task, is_bounded ? bounds : nullptr, out);
       },
       excess.model);
 }

@@ -91,7 +91,7 @@ struct ExcessTask {
   int posts() const { return maxPosts(station, ground, propagation::ReadsCrossings<Model>::value); }
 
   /// Builds the ExcessColumn of a segment of a column.
-  /// @param read  PostReader, or a function with the same result
+  /// @param read  see readProfile()
   template <class Reader>
   EMSCAPE_HD ExcessColumn readSegment(std::size_t c, int segment, const ExcessScratch& scratch,
                                       const Reader& read) const {

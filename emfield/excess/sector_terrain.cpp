@@ -58,6 +58,7 @@ struct ChordTask {
   const float *first_part, *last_part, *last_m, *between_m;  ///< SectorPosts
   float known_part;                                          ///< of the last post that is known
   const float* steepest;                                     ///< TerrainBounds
+  const float* highest_cover_m;                              ///< the same; null: no clutter
   int row_windows;
   float half_width_rad;
 };
@@ -67,16 +68,18 @@ struct Extent {
   float low, high;
 };
 
-/// Sets the slack of blocks; NaN if a block is wider than the bounds cover. The box of a block contains the
-/// positions of all paths; the slope in it does not exceed the bound.
+/// Sets the slack and the highest clutter of blocks; NaN if a block is wider than the bounds cover. The box
+/// of a block contains the positions of all paths; the slope in it does not exceed the bound.
 EMSCAPE_SIMD_CLONES void boundBlocks(const ChordTask& task, int first_block, int end_block, float* slack_m,
-                                     float* across_slack_m) {
+                                     float* across_slack_m, float* cover_m) {
   constexpr float kMargin = 0.02f;      // posts: for rounding, and for the curvature of a block
   constexpr float kRounding_m = 0.01f;  // of heights
   const SectorChord chord = task.chord;
   const float *const first_part = task.first_part, *const last_part = task.last_part;
   const float *const last_m = task.last_m, *const between_m = task.between_m;
   const float* const steepest = task.steepest;
+  const bool is_raised = task.highest_cover_m != nullptr;
+  const float* const highest_cover_m = is_raised ? task.highest_cover_m : task.steepest;
   const int row_windows = task.row_windows;
   const float half_width_rad = task.half_width_rad, known_part = task.known_part;
 #pragma omp simd
@@ -99,13 +102,14 @@ EMSCAPE_SIMD_CLONES void boundBlocks(const ChordTask& task, int first_block, int
                 row = rows.low + static_cast<float>(chord.corner_row);
     const int i = static_cast<int>((column > 0 ? column : 0) * kPerStride);
     const int j = static_cast<int>((row > 0 ? row : 0) * kPerStride);
-    const float slope = steepest[j * row_windows + i];
+    const float slope = steepest[j * row_windows + i], highest_m = highest_cover_m[j * row_windows + i];
     const float width = columns.high - columns.low, height = rows.high - rows.low;
     const float longer = width > height ? width : height;
     const float across_m = half_width_rad * last_m[b];
     const bool is_bounded = longer <= TerrainBounds::kMaxExtent;
     slack_m[b] = is_bounded ? slope * (across_m + between_m[b]) + kRounding_m : NAN;
     across_slack_m[b] = is_bounded ? slope * across_m + kRounding_m : NAN;
+    cover_m[b] = is_raised ? highest_m : 0.0f;
   }
 }
 
@@ -187,6 +191,7 @@ SectorTerrain::SectorTerrain(const Station& station, const GroundPosts& ground, 
   corner_.resize(blocks);
   slack_m_.resize(blocks);
   across_slack_m_.resize(blocks);
+  cover_m_.resize(blocks);
 }
 
 void SectorTerrain::readBlock(int block, float aside, float* height_msl_m) const {
@@ -215,8 +220,9 @@ void SectorTerrain::read(const PathSectors::Azimuth& middle, double half_width_r
     spread(index, last);
     boundBlocks(
         {chords_[index], posts_.firstPart(), posts_.lastPart(), posts_.last_m(), posts_.between_m(),
-         posts_.part()[last], bounds_.steepest(), bounds_.rowWindows(), static_cast<float>(half_width_rad)},
-        first / kBlock, blocks(), slack_m_.data(), across_slack_m_.data());
+         posts_.part()[last], bounds_.steepest(), ground_.is_raised ? bounds_.highestCover_m() : nullptr,
+         bounds_.rowWindows(), static_cast<float>(half_width_rad)},
+        first / kBlock, blocks(), slack_m_.data(), across_slack_m_.data(), cover_m_.data());
     if (posts_read_ < end) break;
   }
   if (posts_read_ == 0) return;
@@ -287,8 +293,9 @@ int SectorTerrain::setChord(int index, int end) {
     lowest_row = std::min(lowest_row, lowestOf(edge.row));
   }
   SectorChord& chord = chords_[index];
-  chord.corner_column = static_cast<int>(lowest_column);
-  chord.corner_row = static_cast<int>(lowest_row);
+  // The chord's first block begins before its first post.
+  chord.corner_column = std::max(static_cast<int>(lowest_column) - 1, 0);
+  chord.corner_row = std::max(static_cast<int>(lowest_row) - 1, 0);
   chord.corner_msl_m = raster_->heights_msl_m + static_cast<long long>(chord.corner_row) * raster_->columns +
                        chord.corner_column;
   for (int n = 0; n < 3; ++n) {

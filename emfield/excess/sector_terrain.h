@@ -103,6 +103,8 @@ class SectorTerrain {
   const float* slack_m() const { return slack_m_.data(); }
   /// The same between heights at equal ranges.
   const float* acrossSlack_m() const { return across_slack_m_.data(); }
+  /// Per block: upper bound of the clutter's height anywhere in the sector; 0 unless profiles are raised.
+  const float* cover_m() const { return cover_m_.data(); }
   const SectorChord& chord(int index) const { return chords_[index]; }
   int rowPosts() const { return raster_->columns; }
   /// Reads the heights of the known posts of a block along one path.
@@ -128,7 +130,7 @@ class SectorTerrain {
   /// then of the rows; the part of the last post that is known; and the corner's index in the raster.
   std::vector<float> parabolas_[6], last_part_;
   std::vector<int> corner_;
-  std::vector<float> height_msl_m_, slack_m_, across_slack_m_;
+  std::vector<float> height_msl_m_, slack_m_, across_slack_m_, cover_m_;
 };
 
 }  // namespace emscape::emfield

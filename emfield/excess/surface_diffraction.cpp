@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/math/simd.h"
+#include "emfield/excess/block_cover.h"
 #include "emfield/excess/path_sectors.h"
 #include "emfield/excess/sector_terrain.h"
 #include "emscape/base/parallel.h"
@@ -16,8 +18,10 @@ namespace {
 using propagation::DiffractionModel;
 
 constexpr int kBlock = SectorPosts::kBlock, kGroup = SectorPosts::kGroup;
-/// Posts of a path in a block: crossings, of which there are rarely more, and regular posts near the emitter.
+/// Posts of a path in a block: crossings, of which there are rarely more, and regular posts near the emitter;
+/// of raised profiles elsewhere the beginning of a chord.
 constexpr int kCrossings = 8, kOfBlock = kCrossings + kBlock;
+static_assert(kOfBlock == BlockCover::kPosts);
 
 /// Number of groups of kGroup that contain a number of blocks, or of groups.
 int groupsOf(int count) {
@@ -57,12 +61,18 @@ struct Posts {
   /// In groups (SectorPosts), of the ranges that a post stands for: the least bulge of the earth r^2 / (2 a),
   /// and 1 / r of the nearest and the farthest.
   const float *lowering_m, *per_nearest, *per_farthest;
+  const float* has_clutter;  ///< in groups: 1, or 0 near the emitter
+  const BlockCover* cover;   ///< by which profiles are raised; null: they are not
+  float highest_cover_m, longest_chord_m, longest_chord_beside_m;
 };
 
 /// Work of one thread.
 struct PathMemory {
   std::vector<float> range_m, height_m;  ///< of the posts of the blocks that were read, kOfBlock each
   std::vector<int> read_for;             ///< per block: number of the path for which it was read
+  std::vector<int> raised_for;           ///< the same for its clutter
+  std::vector<int> columns;              ///< per block: number of the posts on columns
+  std::vector<unsigned> doubtful;        ///< per block: posts whose heights are upper bounds, as bits
   std::vector<float> rx_m;               ///< heights of the receivers, as inputs of the model
   std::vector<int> rx_block,
       nu_block;  ///< per height: the blocks that determined the loss of the previous path
@@ -78,7 +88,8 @@ struct PathMemory {
 /// A search for a maximum of the posts of a path.
 struct Maximum {
   float value;
-  int block;  ///< that holds it
+  int block;              ///< that holds it
+  bool is_bound = false;  ///< the true value may be less
 };
 
 /// The path to a column.
@@ -88,7 +99,9 @@ struct Path {
   int blocks;
   float last_m;  ///< largest range of an obstacle
   int number;
-  float aside;  ///< in the sector, -1..1
+  float aside;     ///< in the sector, -1..1
+  float chord_m;   ///< length of the chords of its profile
+  float beside_m;  ///< largest distance from its profile's path
 };
 
 /// The crossings of a short straight part of a path with columns or rows.
@@ -144,6 +157,7 @@ class Search {
       descend(of_groups, groups, bounds_.group_lowered_m.data(), bounds_.group_tx_slope.data(),
               posts_.group_first_m, posts_.group_last_m, clipped, boundOf, most, visitGroup);
     }
+    memory_.is_left = memory_.is_left || most.is_bound;
   }
 
  private:
@@ -173,22 +187,78 @@ class Search {
 
   template <class ValueOf>
   void visit(int block, const ValueOf& valueOf, Maximum& most) const {
+    constexpr float kRounding = 1e-5f;
     read(block);
+    const bool is_raised = posts_.cover != nullptr;
     const float *const range_m = memory_.range_m.data() + block * kOfBlock, *const height_m =
                                                                                 memory_.height_m.data() +
                                                                                 block * kOfBlock;
+    float highest_m = 0;
     const auto largestOf = [&](int begin, int end) {
+      const float raised_m = highest_m;
       float largest = -HUGE_VALF;
 #pragma omp simd reduction(max : largest)
       for (int i = begin; i < end; ++i) {
-        const float value = valueOf(range_m[i], height_m[i]);
+        const float value = valueOf(range_m[i], height_m[i] + raised_m);
         largest = value > largest ? value : largest;
       }
       return largest;
     };
-    float largest = largestOf(0, kCrossings);
-    if (block * kBlock < posts_.near_count) largest = std::max(largest, largestOf(kCrossings, kOfBlock));
-    if (largest > most.value) most = {largest, block};
+    const auto largestOfAll = [&] {
+      const float largest = largestOf(0, kCrossings);
+      if (!is_raised && block * kBlock >= posts_.near_count) return largest;
+      return std::max(largest, largestOf(kCrossings, kOfBlock));
+    };
+    if (is_raised && memory_.raised_for[block] != path_.number) {
+      highest_m = terrain_.cover_m()[block];
+      if (!(largestOfAll() > most.value)) return;
+      memory_.is_left = memory_.is_left || !(highest_m < HUGE_VALF);
+      highest_m = 0;
+      memory_.raised_for[block] = path_.number;
+      raise(block);
+    }
+    const float largest = largestOfAll();
+    if (!(largest > most.value)) return;
+    bool is_bound = false;
+    for (unsigned left = is_raised ? memory_.doubtful[block] : 0; left != 0; left &= left - 1) {
+      const int i = __builtin_ctz(left);
+      is_bound = is_bound || valueOf(range_m[i], height_m[i]) >= largest - kRounding * std::fabs(largest);
+    }
+    most = {largest, block, is_bound};
+  }
+
+  float lengthOf_m(int block) const {
+    return std::min(posts_.last_m[block], path_.last_m) - posts_.first_m[block];
+  }
+  /// Exactly where the next block begins, if the path reaches it: no crossing is between them.
+  float lastPartOf(int block) const {
+    const float first = posts_.of_sectors->firstPart()[block], last = posts_.of_sectors->lastPart()[block];
+    const float whole_m = posts_.last_m[block] - posts_.first_m[block], length_m = lengthOf_m(block);
+    return length_m < whole_m ? first + (last - first) * length_m / whole_m : last;
+  }
+
+  /// The part of the path in a block, which is straight, within 0.1 mm.
+  RasterLine lineOf(int block) const {
+    const SectorPosts& of_sectors = *posts_.of_sectors;
+    const SectorChord& chord = terrain_.chord(block / of_sectors.blocksPerChord());
+    const float first_m = posts_.first_m[block], length_m = lengthOf_m(block);
+    const float first_part = of_sectors.firstPart()[block], last_part = lastPartOf(block);
+    const auto column = alongPath(chord.column, path_.aside), row = alongPath(chord.row, path_.aside);
+    const auto begin_column = static_cast<double>(column.at(first_part)),
+               begin_row = static_cast<double>(row.at(first_part));
+    return {begin_column + chord.corner_column,
+            begin_row + chord.corner_row,
+            static_cast<double>(column.at(last_part)) - begin_column,
+            static_cast<double>(row.at(last_part)) - begin_row,
+            first_m,
+            length_m};
+  }
+
+  /// Adds the clutter to the posts of a block.
+  void raise(int block) const {
+    memory_.doubtful[block] = posts_.cover->raise(
+        lineOf(block), memory_.columns[block], path_.distance_m, path_.beside_m, bounds_.base_msl_m,
+        memory_.range_m.data() + block * kOfBlock, memory_.height_m.data() + block * kOfBlock);
   }
 
   /// Reads the posts of a block. Its part of the path is straight, within 0.1 mm, and unused places are below
@@ -201,11 +271,8 @@ class Search {
     const SectorChord& chord = terrain_.chord(index);
     const Parabola<float> column = alongPath(chord.column, path_.aside),
                           row = alongPath(chord.row, path_.aside);
-    const float first_m = posts_.first_m[block];
-    const float length_m = std::min(posts_.last_m[block], path_.last_m) - first_m;
-    const float first_part = of_sectors.firstPart()[block];
-    const float last_part = first_part + (of_sectors.lastPart()[block] - first_part) * length_m /
-                                             (posts_.last_m[block] - first_m);
+    const float first_m = posts_.first_m[block], length_m = lengthOf_m(block);
+    const float first_part = of_sectors.firstPart()[block], last_part = lastPartOf(block);
     float* const range_m = memory_.range_m.data() + block * kOfBlock;
     float* const height_m = memory_.height_m.data() + block * kOfBlock;
     const float* const corner = chord.corner_msl_m;
@@ -217,6 +284,7 @@ class Search {
     const Lines rows(row.at(first_part), row.at(last_part), overlap);
     const int column_count = columns.count, count = column_count + rows.count;
     memory_.is_left = memory_.is_left || count > kCrossings;
+    memory_.columns[block] = column_count;
 #pragma omp simd
     for (int n = 0; n < kCrossings; ++n) {
       const int of_row = n < count ? n - column_count : 0;
@@ -240,8 +308,22 @@ class Search {
       range_m[kCrossings + i] = is_read ? of_sectors.range_m()[post] : first_m;
       height_m[kCrossings + i] = is_read ? here : -HUGE_VALF;
     }
+    const bool is_near = first_post < posts_.near_count;
+    if (posts_.cover != nullptr && !is_near) {
+      for (int i = kCrossings; i < kOfBlock; ++i) {
+        range_m[i] = first_m;
+        height_m[i] = -HUGE_VALF;
+      }
+      // Profiles have posts at the beginnings of chords.
+      const float next_m = std::ceil(first_m / path_.chord_m) * path_.chord_m;
+      if (next_m < first_m + length_m) {
+        const float part = first_part + (next_m - first_m) / length_m * (last_part - first_part);
+        range_m[kCrossings] = next_m;
+        height_m[kCrossings] = bilinearHeight(corner, row_posts, column.at(part), row.at(part)) - base_msl_m;
+      }
+    }
     if (!(terrain_.slack_m()[block] < HUGE_VALF)) {
-      const int stored = first_post < posts_.near_count ? kOfBlock : kCrossings;
+      const int stored = is_near || posts_.cover != nullptr ? kOfBlock : kCrossings;
       for (int i = 0; i < stored; ++i) memory_.is_left = memory_.is_left || std::isnan(height_m[i]);
     }
   }
@@ -322,19 +404,21 @@ EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terr
   float max_slope = -HUGE_VALF;  // the largest so far
   for (int g = 0; g < groups; ++g) {
     const int begin = g * kGroup;
-    const float* const slack_m = terrain.slack_m() + begin;
+    const float *const slack_m = terrain.slack_m() + begin, *const cover_m = terrain.cover_m() + begin;
     float *const lowered = bounds.lowered_m.data() + begin, *const steepest = bounds.tx_slope.data() + begin;
 #pragma omp simd
     for (int n = 0; n < kGroup; ++n) lowered[n] = steepest[n] = -HUGE_VALF;
     for (int j = 0; j < kBlock; ++j) {
       const int first = (g * kBlock + j) * kGroup;
       const float* const height_msl_m = terrain.height_msl_m() + first;
-      const float* const lowering_m = posts.lowering_m + first;
+      const float *const lowering_m = posts.lowering_m + first, *const has_clutter =
+                                                                    posts.has_clutter + first;
       const float *const per_nearest = posts.per_nearest + first, *const per_farthest =
                                                                       posts.per_farthest + first;
 #pragma omp simd
       for (int n = 0; n < kGroup; ++n) {
-        const float here = height_msl_m[n] - base - lowering_m[n] + slack_m[n];
+        const float raised_m = has_clutter[n] > 0 ? cover_m[n] : 0.0f;
+        const float here = height_msl_m[n] - base - lowering_m[n] + slack_m[n] + raised_m;
         const float above = here - tx, slope = above * (above > 0 ? per_nearest[n] : per_farthest[n]);
         lowered[n] = here > lowered[n] ? here : lowered[n];
         steepest[n] = slope > steepest[n] ? slope : steepest[n];
@@ -409,13 +493,23 @@ inline bool isClearOfEarth(const Posts& posts, const SectorTerrain& terrain, con
   }
   add(to.distance_m, static_cast<double>(ground_m));
   // The weight of a height in either end of the line is at most twice that in the mean height.
-  const float most_m = 2 * trend.differences_m2[block] / path.distance_m;
+  // Clutter of one height along two thirds of the path, where the weights are positive, raises it by 4/3 of
+  // it.
+  const float most_m = 2 * trend.differences_m2[block] / path.distance_m + posts.highest_cover_m * (4.0f / 3);
   propagation::TerrainTrend<float> highest{};
   highest.start_msl_m = static_cast<float>(sums.start_m(to.distance_m)) + most_m;
   highest.end_msl_m = static_cast<float>(sums.end_m(to.distance_m)) + most_m;
   highest.rx_ground_msl_m = ground_m;
   const auto least = effectiveHeights(highest, bounds.tx_m, rx_m);
   return isClear(least.tx_m, least.rx_m);
+}
+
+/// Largest distance between a path of a sector and the same in chords of a profile, whose deviation grows by
+/// the cube of their length. @see terrain_walk.h
+inline float besideProfile_m(const Posts& posts, float chord_m) {
+  constexpr float kRounding_m = 0.005f;
+  const float part = chord_m / posts.longest_chord_m;
+  return kRounding_m + posts.longest_chord_beside_m * part * part * part;
 }
 
 /// The paths of one sector.
@@ -483,6 +577,8 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
     path.before = sector.task.ground.lastBefore(to->distance_m);
     path.last_m = path.distance_m * (1 - 3e-7f);
     path.aside = to->aside_rad * per_rad;
+    path.chord_m = path.distance_m / (std::floor(path.distance_m / posts.longest_chord_m) + 1);
+    path.beside_m = besideProfile_m(posts, path.chord_m);
     ++path.number;
     if (path.before < kMinPosts || path.before + 1 >= terrain.posts()) continue;
     const bool is_beyond = path.last_m > posts.of_sectors->farthest_m()[path.before];
@@ -528,16 +624,35 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
   const int padded_groups = groupsOf(groups) * kGroup;
   group_first_m.resize(padded_groups, group_first_m.back());
   group_last_m.resize(padded_groups, group_last_m.back());
-  std::vector<float> lowering_m, per_nearest, per_farthest;
+  std::vector<float> lowering_m, per_nearest, per_farthest, has_clutter;
   for (const int post : sector_posts.postsInGroups()) {
     const float nearest_m = sector_posts.nearest_m()[post];
     lowering_m.push_back(task.model.model.half_curvature * nearest_m * nearest_m);
     per_nearest.push_back(1 / nearest_m);
     per_farthest.push_back(1 / sector_posts.farthest_m()[post]);
+    has_clutter.push_back(static_cast<double>(sector_posts.farthest_m()[post]) > kClutterFree_m ? 1.0f
+                                                                                                : 0.0f);
   }
-  const Posts posts{task.model.model,  task.ground.ranges_m, &sector_posts,        task.ground.near_count,
-                    first_m.data(),    last_m.data(),        group_first_m.data(), group_last_m.data(),
-                    lowering_m.data(), per_nearest.data(),   per_farthest.data()};
+  constexpr double kOf75Degrees = 0.965925826289068;
+  const double sine_of_latitude = std::fabs(task.station.geodesy.station.up.z);
+  std::optional<BlockCover> cover;
+  if (task.ground.is_raised) cover.emplace(task.ground.terrain);
+  const Posts posts{task.model.model,
+                    task.ground.ranges_m,
+                    &sector_posts,
+                    task.ground.near_count,
+                    first_m.data(),
+                    last_m.data(),
+                    group_first_m.data(),
+                    group_last_m.data(),
+                    lowering_m.data(),
+                    per_nearest.data(),
+                    per_farthest.data(),
+                    has_clutter.data(),
+                    cover ? &*cover : nullptr,
+                    cover ? bounds.highestCoverOfAll_m() : 0,
+                    static_cast<float>(maxChord_m(sine_of_latitude)),
+                    sine_of_latitude < kOf75Degrees ? 0.02f : 0.1f};
   parallelFor(sectors.count(), 16, [&](int begin, int end) {
     SectorTerrain terrain(task.station, task.ground, bounds, sector_posts);
     SectorBounds of_sector;
@@ -549,6 +664,8 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
     PathMemory memory;
     memory.range_m.resize(blocks * kOfBlock);
     memory.height_m.resize(blocks * kOfBlock);
+    memory.columns.resize(blocks);
+    memory.doubtful.resize(blocks);
     memory.rx_m.resize(task.grid.layers);
     memory.rx_block.resize(task.grid.layers);
     memory.nu_block.resize(task.grid.layers);
@@ -563,6 +680,7 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
       if (terrain.blocks() == 0) continue;
       setBounds(posts, terrain, task.model.tx_msl_m, of_sector);
       memory.read_for.assign(blocks, 0);
+      memory.raised_for.assign(blocks, 0);
       fillSector({task, sectors.begin(sector), sectors.end(sector), sectors.halfWidth_rad(sector), out,
                   is_left.data()},
                  posts, terrain, of_sector, memory);

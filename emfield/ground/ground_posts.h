@@ -109,20 +109,6 @@ EMSCAPE_HD void visitPosts(const Station& station, const GroundPosts& ground, co
   }
 }
 
-/// Reads the regular posts that are nearer than a point. Host and device.
-struct PostReader {
-  /// @return their number, with the emitter's
-  EMSCAPE_HD int operator()(const Station& station, const GroundPosts& ground, const FastInverse& path,
-                            double* range_m, float* height_msl_m) const {
-    const int count = ground.lastBefore(path.distance_m) + 1;
-    visitPosts(station, ground, path, count, [&](int i, float here) {
-      range_m[i] = ground.ranges_m[i];
-      height_msl_m[i] = here;
-    });
-    return count;
-  }
-};
-
 /// The land cover at a range of a walk.
 EMSCAPE_HD inline scenario::CoverValues coverAt(TerrainWalk& walk, const GroundPosts& ground,
                                                 double range_m) {
@@ -145,6 +131,26 @@ EMSCAPE_HD inline void readCover(const Station& station, const GroundPosts& grou
   }
 }
 
+/// Reads the regular posts that are nearer than a point. Host and device.
+struct PostReader {
+  /// @return their number, with the emitter's
+  EMSCAPE_HD int operator()(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                            double* range_m, float* height_msl_m) const {
+    const int count = ground.lastBefore(path.distance_m) + 1;
+    visitPosts(station, ground, path, count, [&](int i, float here) {
+      range_m[i] = ground.ranges_m[i];
+      height_msl_m[i] = here;
+    });
+    return count;
+  }
+  /// Reads TerrainProfile::cover_m.
+  EMSCAPE_HD void readCover(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                            const double* range_m, const float* ground_msl_m, int count,
+                            float* cover_m) const {
+    emfield::readCover(station, ground, path, range_m, ground_msl_m, count, cover_m);
+  }
+};
+
 /// Distance (m) from the ends of a path within which its profile is that of the bare ground: the clutter
 /// around the antennas is not an edge on the path. @see P.452-18, section 4.2, which has the same
 constexpr double kClutterFree_m = 50;
@@ -155,7 +161,9 @@ EMSCAPE_HD inline void raiseByClutter(const double* range_m, const float* cover_
                                       float* ground_msl_m) {
   const double last_m = range_m[count - 1] - kClutterFree_m;
   for (int i = 0; i < count; ++i) {
-    if (range_m[i] > kClutterFree_m && range_m[i] < last_m && cover_m[i] > 0) ground_msl_m[i] += cover_m[i];
+    const bool is_between = (range_m[i] > kClutterFree_m) & (range_m[i] < last_m);
+    const float raise_m = cover_m[i] > 0 ? cover_m[i] : 0.0f;  // not if it is NaN
+    ground_msl_m[i] += is_between ? raise_m : 0.0f;
   }
 }
 
@@ -167,7 +175,7 @@ EMSCAPE_HD inline float groundAt(const Station& station, const GroundPosts& grou
 }
 
 /// The profile to a point of the ground: the posts nearer than it, and the point itself.
-/// @param read  PostReader, or a function with the same result
+/// @param read  PostReader, or an object with the same functions and results
 template <class Reader>
 EMSCAPE_HD TerrainProfile readProfile(const Station& station, const GroundPosts& ground,
                                       const FastInverse& point, float ground_msl_m,
@@ -180,7 +188,7 @@ EMSCAPE_HD TerrainProfile readProfile(const Station& station, const GroundPosts&
   }
   TerrainProfile profile{scratch.range_m, scratch.ground_msl_m, last + 1};
   if (!ground.is_smooth && ground.terrain.hasCover()) {
-    readCover(station, ground, point, scratch.range_m, scratch.ground_msl_m, last + 1, scratch.cover_m);
+    read.readCover(station, ground, point, scratch.range_m, scratch.ground_msl_m, last + 1, scratch.cover_m);
     profile.cover_m = scratch.cover_m;
     if (ground.is_raised) raiseByClutter(scratch.range_m, scratch.cover_m, last + 1, scratch.ground_msl_m);
   }

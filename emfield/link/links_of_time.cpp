@@ -318,7 +318,10 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
     Emitter& with_target = scene->scenario->emitters[detection.radar];
     with_target.receiver.swerling = target.swerling;
     with_target.receiver.target_rcs_m2 = row.rcs_m2;
-    if (with_target.clutter) with_target.clutter->target_radial_speed_mps = row.radial_speed_mps;
+    if (with_target.clutter) {
+      with_target.clutter->target_radial_speed_mps =
+          speedOverGround_mps(snapshot, detection.radar, target.platform, terrain);
+    }
     try {
       budget = pathBudget(scene->snapshot, detection.radar, {carrier.position, carrier.height_msl_m}, model_,
                           terrain);

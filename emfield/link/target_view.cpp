@@ -24,6 +24,26 @@ void clipToLeg(const std::vector<scenario::TrackPoint>& track, double t_s, doubl
   }
 }
 
+/// Rate (m/s) of the distance between a radar and a platform.
+/// @param has_radar_moved  false: the radar stays where it is at the time
+double rangeRate_mps(const scenario::Snapshot& snapshot, int radar, int platform,
+                     const scenario::Terrain* terrain, bool has_radar_moved) {
+  constexpr double kHalfStep_s = 0.01;
+  const scenario::Scenario& scenario = *snapshot.scenario;
+  const int carrier = scenario.emitters[static_cast<std::size_t>(radar)].platform;
+  double from_s = snapshot.time_s - kHalfStep_s, to_s = snapshot.time_s + kHalfStep_s;
+  for (const int moving : {carrier, platform})
+    clipToLeg(scenario.platforms[static_cast<std::size_t>(moving)].track, snapshot.time_s, from_s, to_s);
+  if (!(to_s > from_s)) from_s = to_s - kHalfStep_s;  // one of them stops where the other turns
+  const auto range_m = [&](double t_s) {
+    const scenario::Snapshot at = scenario::instantAt(snapshot.scenario, terrain, t_s);
+    const scenario::Snapshot& of_radar = has_radar_moved ? at : snapshot;
+    return length(toEcef(at.platforms[static_cast<std::size_t>(platform)].position) -
+                  toEcef(of_radar.emitters[static_cast<std::size_t>(radar)].position));
+  };
+  return (range_m(to_s) - range_m(from_s)) / (to_s - from_s);
+}
+
 }  // namespace
 
 double rcsTowards_m2(const scenario::Snapshot& snapshot, const scenario::Target& target, int radar) {
@@ -40,19 +60,12 @@ double rcsTowards_m2(const scenario::Snapshot& snapshot, const scenario::Target&
 
 double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platform,
                        const scenario::Terrain* terrain) {
-  constexpr double kHalfStep_s = 0.01;
-  const scenario::Scenario& scenario = *snapshot.scenario;
-  const int carrier = scenario.emitters[static_cast<std::size_t>(radar)].platform;
-  double from_s = snapshot.time_s - kHalfStep_s, to_s = snapshot.time_s + kHalfStep_s;
-  for (const int moving : {carrier, platform})
-    clipToLeg(scenario.platforms[static_cast<std::size_t>(moving)].track, snapshot.time_s, from_s, to_s);
-  if (!(to_s > from_s)) from_s = to_s - kHalfStep_s;  // one of them stops where the other turns
-  const auto range_m = [&](double t_s) {
-    const scenario::Snapshot at = scenario::instantAt(snapshot.scenario, terrain, t_s);
-    return length(toEcef(at.platforms[static_cast<std::size_t>(platform)].position) -
-                  toEcef(at.emitters[static_cast<std::size_t>(radar)].position));
-  };
-  return (range_m(to_s) - range_m(from_s)) / (to_s - from_s);
+  return rangeRate_mps(snapshot, radar, platform, terrain, true);
+}
+
+double speedOverGround_mps(const scenario::Snapshot& snapshot, int radar, int platform,
+                           const scenario::Terrain* terrain) {
+  return rangeRate_mps(snapshot, radar, platform, terrain, false);
 }
 
 long long looksUntil(double first_s, double time_s, double period_s) {

@@ -16,6 +16,12 @@ double rcsTowards_m2(const scenario::Snapshot& snapshot, const scenario::Target&
 double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platform,
                        const scenario::Terrain* terrain);
 
+/// The same without the radar's own motion: what a filter sees of the target, whose zero is the ground in its
+/// direction. The ground there moves away at radialSpeed_mps() less this: for a radar of speed v at the angle
+/// psi from its track, -v cos psi. @see M. A. Richards, Fundamentals of Radar Signal Processing, section 5.2
+double speedOverGround_mps(const scenario::Snapshot& snapshot, int radar, int platform,
+                           const scenario::Terrain* terrain);
+
 /// Number of looks of a radar from the time of its first look until another time.
 /// @param period_s  between looks, > 0
 long long looksUntil(double first_s, double time_s, double period_s);

@@ -232,6 +232,10 @@ LandCover::LandCover(const LandCoverSpec& spec, const GeoBox& box) : impl_(std::
   }
   cover.tiles.clear();
   cover.report(spec, other);
+  // Elevation posts are often at the edges of cells: rounding would decide on the class there.
+  constexpr double kShift_m = 0.05, kEarth_m = 6371e3;
+  cover.view.south_rad -= kShift_m / kEarth_m;
+  cover.view.west_rad -= kShift_m / kEarth_m;
   cover.view.cells = cover.cells.data();
   cover.view.classes = cover.values.data();
   cover.view.class_count = static_cast<int>(cover.values.size());

@@ -134,6 +134,11 @@ struct TerrainView {
     return heightAmong(rasters, count, latitude_rad, longitude_rad);
   }
 
+  /// The same of the surface model.
+  EMSCAPE_HD float surfaceAt(double latitude_rad, double longitude_rad) const {
+    return heightAmong(surfaces, surface_count, latitude_rad, longitude_rad);
+  }
+
   /// True if coverAt() may be known.
   EMSCAPE_HD bool hasCover() const { return cover.isSet() || surface_count > 0; }
   /// The land cover at a point as an element of TerrainProfile::cover_m.
@@ -143,7 +148,7 @@ struct TerrainView {
                         (values.zone == CoverZone::water && ground_msl_m <= LandCover::kMaxSea_m);
     if (is_sea) return propagation::kSeaCover;
     if (values.zone == CoverZone::water) return 0;
-    const float above_m = heightAmong(surfaces, surface_count, latitude_rad, longitude_rad) - ground_msl_m;
+    const float above_m = surfaceAt(latitude_rad, longitude_rad) - ground_msl_m;
     if (above_m == above_m) return above_m > 0 ? above_m : 0;
     return values.is_known ? values.clutter_height_m : NAN;
   }

@@ -146,7 +146,7 @@ class Track {
       emitter.receiver.swerling = target.swerling;
       if (emitter.clutter) {
         emitter.clutter->target_radial_speed_mps =
-            emfield::radialSpeed_mps(snapshot, radar, target.platform, terrain_.get());
+            emfield::speedOverGround_mps(snapshot, radar, target.platform, terrain_.get());
       }
     }
     return seen;

@@ -204,8 +204,16 @@ TEST(TerminalClutter, IsAddedOrReplacesASmallerLossByTerrain) {
     scenario->ground.terminal_clutter_combine = propagation::ClutterCombination::sum;
     const double clutter_db = lossOf(1, (latitude_deg - 45) * 111.1e3, 50);
     EXPECT_NEAR(lossAt(latitude_deg), by_terrain_db + clutter_db, 0.02);
+    const auto isWarned = [&] {
+      const std::vector<std::string> all = budgetTo(scenario, hills, latitude_deg, 102).excess.warnings;
+      return std::any_of(all.begin(), all.end(), [](const std::string& warning) {
+        return warning.find("terminal_clutter_combine: larger") != std::string::npos;
+      });
+    };
+    EXPECT_EQ(isWarned(), by_terrain_db > 6) << by_terrain_db;
     scenario->ground.terminal_clutter_combine = propagation::ClutterCombination::larger;
     EXPECT_NEAR(lossAt(latitude_deg), std::max(by_terrain_db, clutter_db), 0.02);
+    EXPECT_FALSE(isWarned());
   }
 }
 

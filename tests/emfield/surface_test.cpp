@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
+#include <vector>
 
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
@@ -138,6 +140,84 @@ TEST_P(SurfaceField, SLOW_EqualsPathsAtManyPositions) {
   scenario->atmosphere.refraction = propagation::RefractionProfile::exponential;
   scenario->output.quantities = {"power_density_dbwm2"};
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
+}
+
+// Low antennas and long waves: the earth's own loss decides more often. Positions behind hills whose
+// obstacles prove that it has none are not read whole.
+TEST_P(SurfaceField, SLOW_EqualsPathsAtManyPositionsNearTheGround) {
+  const auto scenario = radarOnRidge(PropagationModel::diffraction);
+  const auto surface = positions(HeightReference::ground, {15, 25, 60}, 300, 200);
+  for (const double frequency_hz : {300e6, 1e9}) {
+    for (const double height_agl_m : {2.0, 20.0}) {
+      scenario->emitters[0].frequency_hz = frequency_hz;
+      scenario->platforms[0].track[0].position.height_agl_m = height_agl_m;
+      EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 3000);
+    }
+  }
+}
+
+/// Hills with patches of woods, houses, water and unknown cells of some 10 m, or with a surface model of the
+/// same posts that has a void.
+class CoveredHills : public MadeTerrain {
+ public:
+  explicit CoveredHills(bool has_surface)
+      : MadeTerrain(36.303, -84.246, 0.3),
+        surface_(36.303, -84.246, 0.3,
+                 [&, patches = std::mt19937(5)](double east_deg, double north_deg) mutable {
+                   const double above_m = 30 * within(patches) - 10;
+                   return std::hypot(east_deg - 0.05, north_deg - 0.05) < 0.01
+                              ? std::numeric_limits<double>::quiet_NaN()
+                              : double(MadeTerrain::view().heightAt(degToRad(36.153 + north_deg),
+                                                                    degToRad(-84.396 + east_deg))) +
+                                    above_m;
+                 }) {
+    using scenario::CoverZone;
+    constexpr int kCells = 3200, kPatch = 3;
+    std::mt19937 patches(3);
+    cells_.resize(kCells * kCells);
+    for (int j = 0; j < kCells; ++j) {
+      for (int i = 0; i < kCells; ++i) {
+        const bool is_new = j % kPatch == 0 && i % kPatch == 0;
+        const int of_patch = (j - j % kPatch) * kCells + i - i % kPatch;
+        cells_[j * kCells + i] = is_new ? std::uint8_t(6 * within(patches)) : cells_[of_patch];
+      }
+    }
+    view_ = MadeTerrain::view();
+    view_.cover = {cells_.data(),           kCells,          kCells,
+                   degToRad(36.15),         degToRad(-84.4), kCells / degToRad(0.31),
+                   kCells / degToRad(0.31), kClasses,        5};
+    if (has_surface) {
+      surface_view_ = surface_.view();
+      view_.surfaces = surface_view_.rasters;
+      view_.surface_count = 1;
+    }
+  }
+  scenario::TerrainView view() const override { return view_; }
+
+ private:
+  static double within(std::mt19937& random) { return std::uniform_real_distribution<double>()(random); }
+
+  static constexpr scenario::CoverValues kClasses[5] = {{true, 15, scenario::CoverZone::land},
+                                                        {true, 8, scenario::CoverZone::land},
+                                                        {true, 0, scenario::CoverZone::land},
+                                                        {true, 0, scenario::CoverZone::water},
+                                                        {true, 20, scenario::CoverZone::land}};
+  MadeTerrain surface_;
+  std::vector<std::uint8_t> cells_;
+  scenario::TerrainView view_, surface_view_;
+};
+
+// Budgets read the clutter of every post.
+TEST_P(SurfaceField, SLOW_WithClutterEqualsPathsAtManyPositions) {
+  for (const bool has_surface : {false, true}) {
+    SCOPED_TRACE(has_surface);
+    terrain_ = std::make_shared<CoveredHills>(has_surface);
+    const auto scenario = radarOnRidge(PropagationModel::diffraction);
+    const auto surface = positions(HeightReference::ground, {5, 40, 150, 600}, 300, 200);
+    EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
+    scenario->platforms[0].track[0].position.height_agl_m = 3;
+    EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
+  }
 }
 
 // The same of shadows, which are equal.

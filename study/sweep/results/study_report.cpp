@@ -14,6 +14,7 @@
 #include "base/files/whole_file.h"
 #include "base/text/quantity_text.h"
 #include "document/schema_check.h"
+#include "emfield/excess/clutter_text.h"
 #include "emscape/study/maps/map.h"
 #include "emscape/study/maps/map_grid.h"
 #include "study/report/html_report.h"
@@ -84,6 +85,7 @@ class ReportWriter {
                             fmt::format("{}, CRC-32 {:08x}", std::filesystem::path(file).filename().string(),
                                         digestOf(file).crc32));
     }
+    inputs.emplace_back("Clutter", emfield::clutterText(*study_.base));
     report_.facts(inputs);
     report_.facts({{"Study", study_.file},
                    {"Hash of study, scenario and files", study_.hash},
