@@ -10,6 +10,7 @@
 #include <cerrno>
 
 #include "tests/support/errors.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -62,6 +63,18 @@ TEST_P(LockWithoutFlock, LeavesAFileThatIsNoLock) {
   EXPECT_THAT(test::errorOf([&] { FolderLock(folder_.path(), "a.lock"); }, ErrorCode::other),
               HasSubstr("that is no lock of emscape"));
   EXPECT_EQ(test::readFile(folder_ / "a.lock"), "of the user");
+}
+
+/// A lock that could not be written would block its folder once its process is killed.
+TEST(FolderLock, IsNotHeldOnAFullDisk) {
+  const test::TemporaryFolder folder;
+  {
+    const test::FileSizeLimit full(0);
+    EXPECT_THAT(test::errorOf([&] { FolderLock(folder.path(), "a.lock"); }, ErrorCode::other),
+                HasSubstr("a.lock: cannot write: "));
+  }
+  EXPECT_THAT(folder.files(), IsEmpty());
+  EXPECT_NE(FolderLock::tryLock(folder.path(), "a.lock"), nullptr);
 }
 
 INSTANTIATE_TEST_SUITE_P(Causes, LockWithoutFlock, testing::Values(ENOLCK, ENOSYS, EOPNOTSUPP, EIO));
