@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <memory>
 
 #include "base/text/count_text.h"
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "recording/acmi/acmi_reader.h"
 #include "recording/common/samples.h"
 #include "recording/common/text.h"
@@ -241,23 +243,14 @@ void dropWithoutPosition(Recording& recording) {
       fmt::format("{} without a position, left out", countText(dropped, "object", "objects")));
 }
 
-/// Says how letters are read in a text that states no encoding and is not in UTF-8.
-void tellEncoding(const std::string& head, Format format, Recording& recording) {
-  const bool has_names = format == Format::table || format == Format::gpx || format == Format::kml;
-  if (!has_names || isUtf8(head, true) || !declaredEncoding(head).empty()) return;
-  recording.tally.notes.emplace_back(
-      "not in UTF-8: letters of names are taken as Latin-1; 'iconv -f ENCODING -t UTF-8 OLD > NEW' converts "
-      "a text in another encoding, such as WINDOWS-1251");
-}
-
 Recording readFrom(const Opener& open, const std::string& file, const ReadOptions& options,
                    const ProgressSink& progress) {
+  const WorkPart part("reading " + std::filesystem::path(file).filename().string(), 0, 1);
   Recording recording;
   try {
     const std::string head = headOf(*unzipped(open, file));
     const Format format = formatOf(head, options);
     recording = readFormat(format, unzipped(open, file), file, options, progress);
-    tellEncoding(head, format, recording);
   } catch (const Error& error) {
     if (!error.location().file.empty()) throw;
     throw Error(error.code(), {file, 0, 0}, error.message());

@@ -1,11 +1,13 @@
 #include "base/files/file_reading.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <system_error>
 
 #include "base/files/descriptor.h"
+#include "base/large_array.h"
 #include "emscape/base/error.h"
 
 namespace emscape {
@@ -32,9 +34,16 @@ Bytes readAll(const fs::path& path, std::uintmax_t max_bytes) {
     fail("is " + std::to_string(size) + " bytes large, more than the allowed " + std::to_string(max_bytes));
   }
   Bytes bytes;
-  bytes.resize(static_cast<std::size_t>(size));
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (static_cast<std::uintmax_t>(stream.gcount()) != size) fail("cannot read: it ended early");
+  bytes.reserve(static_cast<std::size_t>(size));
+  ByteCheckpoints checkpoints;
+  for (std::size_t done = 0; done < size;) {
+    const std::size_t part = std::min(static_cast<std::size_t>(size) - done, ByteCheckpoints::kBytes / 8);
+    bytes.resize(done + part);
+    stream.read(reinterpret_cast<char*>(bytes.data()) + done, static_cast<std::streamsize>(part));
+    if (static_cast<std::size_t>(stream.gcount()) != part) fail("cannot read: it ended early");
+    done += part;
+    checkpoints.add(part);
+  }
   return bytes;
 }
 

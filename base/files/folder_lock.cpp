@@ -104,9 +104,14 @@ bool FolderLock::lock(std::string& holder) {
   char host[256] = "?";
   ::gethostname(host, sizeof host - 1);
   const std::string own = kLockWords + "process " + std::to_string(::getpid()) + " on " + host;
-  // The name of the process is for messages; it may be of a killed one, if it cannot be written.
-  if (::ftruncate(descriptor_.number(), 0) == 0) {
-    static_cast<void>(::pwrite(descriptor_.number(), own.data(), own.size(), 0) == 0);
+  errno = ENOSPC;  // where a part is written
+  // A lock without its words would be taken for a file of the user after this process is killed.
+  if (::ftruncate(descriptor_.number(), 0) != 0 ||
+      ::pwrite(descriptor_.number(), own.data(), own.size(), 0) != static_cast<ssize_t>(own.size())) {
+    const std::string cause = causeOf(errno);
+    remove();
+    descriptor_.close();
+    failWriting(file_, cause);
   }
   return true;
 }

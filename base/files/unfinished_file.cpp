@@ -6,12 +6,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <ext/stdio_filebuf.h>
 #include <memory>
 #include <random>
 #include <utility>
 #include <vector>
+
+#include "base/large_array.h"
 
 namespace emscape {
 namespace fs = std::filesystem;
@@ -122,9 +125,35 @@ void UnfinishedFile::removeOwnFolder() {
   own_folder_.close();
 }
 
+namespace {
+
+/// Writes large blocks in parts, between which the work can be stopped.
+class PartsBuffer : public __gnu_cxx::stdio_filebuf<char> {
+ public:
+  using stdio_filebuf::stdio_filebuf;
+
+ protected:
+  std::streamsize xsputn(const char* bytes, std::streamsize count) override {
+    constexpr std::streamsize kAtOnce = ByteCheckpoints::kBytes / 8;
+    std::streamsize done = 0;
+    while (done < count) {
+      const std::streamsize part = std::min(kAtOnce, count - done);
+      const std::streamsize written = stdio_filebuf::xsputn(bytes + done, part);
+      done += written;
+      if (written != part) break;
+      checkpoints_.add(static_cast<std::size_t>(written));
+    }
+    return done;
+  }
+
+ private:
+  ByteCheckpoints checkpoints_;
+};
+
+}  // namespace
+
 void UnfinishedFile::write(const std::function<void(std::ostream&)>& fill) {
-  __gnu_cxx::stdio_filebuf<char> buffer(createFile(own_folder_, file_, O_WRONLY).release(),
-                                        std::ios::out | std::ios::binary);
+  PartsBuffer buffer(createFile(own_folder_, file_, O_WRONLY).release(), std::ios::out | std::ios::binary);
   std::ostream stream(&buffer);
   try {
     stream.exceptions(std::ios::badbit | std::ios::failbit);
@@ -139,13 +168,12 @@ void UnfinishedFile::write(const std::function<void(std::ostream&)>& fill) {
 int UnfinishedFile::rename(const std::string& name, bool replaces) const {
   const Descriptor opened(
       ::openat(own_folder_.number(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-  if (!opened.isOpen() || ::fsync(opened.number()) != 0) return errno;
-  // Who may read and write a file that is replaced stays as its owner has set it.
-  struct stat replaced {};
-  if (replaces && ::fstatat(folder_.number(), name.c_str(), &replaced, AT_SYMLINK_NOFOLLOW) == 0 &&
-      S_ISREG(replaced.st_mode) && ::fchmod(opened.number(), replaced.st_mode & 0777) != 0) {
-    return errno;
-  }
+  if (!opened.isOpen()) return errno;
+  struct stat former {};  // who may read a file does not change because it is written anew
+  const bool has_former = ::fstatat(folder_.number(), name.c_str(), &former, AT_SYMLINK_NOFOLLOW) == 0 &&
+                          S_ISREG(former.st_mode) && former.st_uid == ::geteuid();
+  if (has_former && ::fchmod(opened.number(), former.st_mode & 0777) != 0) return errno;
+  if (::fsync(opened.number()) != 0) return errno;
   const auto renamed = [&](unsigned flags) {
     return ::renameat2(own_folder_.number(), name.c_str(), folder_.number(), name.c_str(), flags) == 0;
   };

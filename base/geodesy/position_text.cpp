@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <sstream>
 
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
@@ -129,12 +130,40 @@ std::string joinedCoordinates(std::string text) {
   return joined;
 }
 
+/// Refuses UTM as "16S 733000 4043000" with a northing of MGRS's band S, 32 to 40 degrees north: receivers
+/// write the band after the zone, others S for south. Other northings are south of the equator.
+/// @param coordinates  joinedCoordinates()
+void requireClearSouth(const std::string& coordinates) {
+  constexpr double kBandBegin_m = 3.53e6, kBandEnd_m = 4.44e6;
+  std::string text = coordinates;
+  std::replace(text.begin(), text.end(), ',', ' ');
+  std::istringstream words(text);
+  std::string first, second, third, more;
+  if (!(words >> first >> second >> third) || words >> more) return;
+  const bool is_zone_first = std::isalpha(static_cast<unsigned char>(first.back())) != 0;
+  const std::string &zone = is_zone_first ? first : third, &northing = is_zone_first ? third : second;
+  const std::size_t digits = zone.size() - 1;
+  const bool is_south = (zone.back() == 'S' || zone.back() == 's') && digits >= 1 && digits <= 2 &&
+                        std::all_of(zone.begin(), zone.end() - 1, isDigit);
+  char* end = nullptr;
+  const double north_m = std::strtod(northing.c_str(), &end);
+  if (!is_south || *end != '\0' || !(north_m > kBandBegin_m && north_m < kBandEnd_m)) return;
+  const auto written = [&](const char* side) {
+    const std::string whole = zone.substr(0, digits) + side;
+    return is_zone_first ? whole + " " + second + " " + third : first + " " + second + " " + whole;
+  };
+  throw Error(ErrorCode::usage, fmt::format("in '{}' {} may be MGRS's band, 32 to 40 degrees north, or south "
+                                            "of the equator; write '{}' or '{}'",
+                                            coordinates, zone.back(), written("north"), written("south")));
+}
+
 /// None if it is not a position.
 std::optional<ParsedPosition> parseHorizontal(const std::string& text) {
   const std::string reference = mgrsReference(text);
   const std::string coordinates = reference.empty() ? joinedCoordinates(text) : reference;
   // One word alone would be a zone of MGRS: an area of hundreds of kilometres.
   if (reference.empty() && coordinates.find_first_of(" ,") == std::string::npos) return std::nullopt;
+  if (reference.empty()) requireClearSouth(coordinates);
   try {
     const GeographicLib::GeoCoords read(coordinates);
     if (!std::isfinite(read.Latitude()) || !std::isfinite(read.Longitude())) return std::nullopt;
@@ -198,9 +227,10 @@ ParsedPosition parsePosition(const std::string& text) {
     }
     if (const std::optional<ParsedPosition> position = parseHorizontal(whole)) return *position;
   }
-  throw Error(ErrorCode::usage, "'" + whole.substr(0, kMaxText) +
-                                    "' is not a position such as 36.5,-84.2 or 36.5N 84.2W or "
-                                    "36°30'12\"N 84°12'W or 16S GF 12345 67890");
+  throw Error(ErrorCode::usage,
+              "'" + whole.substr(0, kMaxText) +
+                  "' is not a position such as 36.5,-84.2 or 36.5N 84.2W or "
+                  "36°30'12\"N 84°12'W or 16S GF 12345 67890 or, in UTM, 16north 733000 4043000");
 }
 
 std::optional<double> parseCoordinate(const std::string& text, bool is_latitude) {

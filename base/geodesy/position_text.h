@@ -25,8 +25,8 @@ struct ParsedPosition {
 
 /// Reads a position in one of the forms of positionText() and in the usual variants of them: "36.5, -84.2",
 /// "36.5N 84.2W", "36°30'12\"N 84°12'W", "36d30'12\"N, 84d12'W", "16S GF 12345 67890", UTM as "16n 733000
-/// 4043000". A comma and a number (m) may follow as height. Two numbers without letters are latitude and
-/// longitude.
+/// 4043000" or "16north 733000 4043000"; a zone's S with a northing of MGRS's band S is refused. A comma and
+/// a number (m) may follow as height. Two numbers without letters are latitude and longitude.
 /// @throws Error (usage) that states the forms
 ParsedPosition parsePosition(const std::string& text);
 

@@ -75,6 +75,8 @@ std::vector<std::string> clutterWarnings(const scenario::Scenario& scenario,
   };
   if (model == PropagationModel::two_ray && scenario.terrain)
     warn("'two_ray' is for water and other smooth ground: the terrain has no part in its losses");
+  if (model == PropagationModel::p528 && scenario.terrain)
+    warn("'p528' is for a smooth earth: the terrain has no part in its losses");
   if (scenario.ground.terminal_clutter == propagation::TerminalClutterModel::none) return warnings;
   if (scenario::hasClutterMap(scenario)) {
     warn("'terminal_clutter' of 'ground' is not used: the terrain has a map of clutter");

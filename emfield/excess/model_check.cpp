@@ -154,6 +154,23 @@ std::vector<std::string> lowEndWarnings(const Emitter& emitter, double emitter_a
   return warnings;
 }
 
+std::vector<std::string> smoothSurfaceWarnings(const Scenario& scenario, const Emitter& emitter,
+                                               const scenario::Terrain& terrain) {
+  constexpr double kClearly_m = 20;
+  const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+  if (!model.on_smooth_surface || scenario.ground.surface_msl_m) return {};
+  const scenario::SitePosition& site =
+      scenario.platforms[static_cast<std::size_t>(emitter.platform)].track.front().position;
+  const double surface_m = terrain.heightMsl_m(site.latitude_deg, site.longitude_deg),
+               lowest_m = terrain.lowest_m();
+  if (!(surface_m - lowest_m > kClearly_m)) return {};
+  return {fmt::format(
+      "emitter '{0}': the smooth surface of '{1}' is the ground below the emitter, {2:.0f} m above mean sea "
+      "level; the lowest ground is at {3:.0f} m: points below the surface, as of a sea below a hill, have no "
+      "field of their own; 'ground: {{surface_msl_m: {3:.0f}}}' sets the surface",
+      emitter.name, model.name, surface_m, lowest_m)};
+}
+
 double partAtSeaLevel(const std::vector<float>& heights_m) {
   constexpr float kSame_m = 0.5f;  // the sea is at or below it: some files have its bottom
   std::size_t count = 0, known = 0;

@@ -40,6 +40,12 @@ std::vector<std::string> lowEndWarnings(const scenario::Emitter& emitter, double
 std::vector<std::string> seaWarnings(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                      double lowest_m, double at_sea_level);
 
+/// A warning if ground lies clearly below the smooth surface of an emitter's model, as a sea below a hill: it
+/// has no field of its own there. The surface is that of the beginning of the emitter's track.
+std::vector<std::string> smoothSurfaceWarnings(const scenario::Scenario& scenario,
+                                               const scenario::Emitter& emitter,
+                                               const scenario::Terrain& terrain);
+
 /// Part of heights (m above mean sea level) of at most 0.5 m; 0 without heights.
 double partAtSeaLevel(const std::vector<float>& heights_m);
 /// The same of a sample of the region's ground; 0 unless some clutter is of land without sea.

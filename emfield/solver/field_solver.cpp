@@ -373,6 +373,9 @@ std::vector<std::string> FieldSolver::warnings() const {
       for (const std::string& warning :
            seaWarnings(*impl_->setup.scenario, emitter, impl_->setup.terrain->lowest_m(), at_sea_level))
         ++all[warning];
+      for (const std::string& warning :
+           smoothSurfaceWarnings(*impl_->setup.scenario, emitter, *impl_->setup.terrain))
+        ++all[warning];
     }
   }
   for (const EmitterCache& cache : impl_->emitters) {

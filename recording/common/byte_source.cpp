@@ -11,6 +11,7 @@
 #include "base/files/descriptor.h"
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 
 namespace emscape::interop {
 namespace {
@@ -42,6 +43,8 @@ class FileSource : public ByteSource {
     const auto count = static_cast<std::size_t>(stream_.gcount());
     if (stream_.bad()) failure_ = "the file cannot be read further";
     done_ += count;
+    checkpoint();
+    reportDone(fraction());
     return count;
   }
   double fraction() const override {

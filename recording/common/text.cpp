@@ -1,5 +1,6 @@
 #include "recording/common/text.h"
 
+#include <fmt/format.h>
 #include <iconv.h>
 
 #include <algorithm>
@@ -59,14 +60,16 @@ std::string declaredEncoding(std::string_view text) {
   return std::string(text.substr(begin, text.find_first_of("\"'", begin) - begin));
 }
 
-std::string utf8Of(std::string_view text, const std::string& encoding) {
-  const iconv_t converter = iconv_open("UTF-8", encoding.empty() ? "LATIN1" : encoding.c_str());
-  if (converter == reinterpret_cast<iconv_t>(-1))
-    return encoding == "LATIN1" ? std::string(text) : utf8Of(text, "LATIN1");
+std::string utf8Of(std::string_view text, const std::string& encoding, std::string* told) {
+  const std::string stated = encoding.empty() ? "LATIN1" : encoding;
+  iconv_t converter = iconv_open("UTF-8", stated.c_str());
+  const bool is_known = converter != reinterpret_cast<iconv_t>(-1);
+  if (!is_known) converter = iconv_open("UTF-8", "LATIN1");
+  if (converter == reinterpret_cast<iconv_t>(-1)) return std::string(text);
   std::string converted;
   std::string input(text);
   char* from = input.data();
-  std::size_t left = input.size();
+  std::size_t left = input.size(), foreign = 0;
   std::array<char, 4096> part{};
   while (left > 0) {
     char* to = part.data();
@@ -74,11 +77,26 @@ std::string utf8Of(std::string_view text, const std::string& encoding) {
     const bool failed = iconv(converter, &from, &left, &to, &room) == static_cast<std::size_t>(-1);
     converted.append(part.data(), part.size() - room);
     if (!failed || errno == E2BIG) continue;
-    converted += "\xEF\xBF\xBD";  // a byte without a meaning, or a character that is cut
+    const auto byte = static_cast<unsigned char>(*from);  // without a meaning, or of a character that is cut
+    if (byte >= 0x80) converted += static_cast<char>(0xC0 | byte >> 6);
+    converted += static_cast<char>(byte < 0x80 ? byte : 0x80 | (byte & 0x3F));
     ++from;
     --left;
+    ++foreign;
   }
   iconv_close(converter);
+  if (told == nullptr) return converted;
+  if (encoding.empty()) {
+    *told =
+        "not in UTF-8: letters of names are taken as Latin-1; 'iconv -f ENCODING -t UTF-8 OLD > NEW' "
+        "converts a text in another encoding, such as WINDOWS-1251";
+  } else if (!is_known || foreign > 0) {
+    *told = fmt::format(
+        "states the encoding {}, {}: letters of names are taken as Latin-1; its first line should state the "
+        "encoding that it has, such as encoding=\"windows-1251\"",
+        printableText(encoding),
+        is_known ? fmt::format("in which {} of its bytes have no meaning", foreign) : "which is not known");
+  }
   return converted;
 }
 

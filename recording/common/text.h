@@ -21,9 +21,11 @@ std::string lowerCase(std::string text);
 bool isUtf8(std::string_view text, bool is_beginning = false);
 /// The encoding that an XML file states at its beginning; empty: none.
 std::string declaredEncoding(std::string_view text);
-/// A text in another encoding as UTF-8; what has no meaning in it becomes U+FFFD. An encoding that the system
-/// does not know, and none, are taken as Latin-1.
-std::string utf8Of(std::string_view text, const std::string& encoding);
+/// A text in another encoding as UTF-8. Bytes without a meaning in it are taken as Latin-1, so that different
+/// texts stay different; so is all of a text in an encoding that the system does not know.
+/// @param encoding  empty: none is stated
+/// @param told  receives, in words, what was taken as Latin-1, with the remedy; may be null
+std::string utf8Of(std::string_view text, const std::string& encoding, std::string* told = nullptr);
 
 /// A text that can be a name: control characters are blanks, at most 150 bytes.
 std::string printableText(std::string_view text);

@@ -36,11 +36,12 @@ std::string parseXml(std::string_view text, pugi::xml_document& document) {
   return fault ? fault->message : "";
 }
 
-std::string loadXml(ByteSource& source, const std::string& name, pugi::xml_document& document) {
+std::string loadXml(ByteSource& source, const std::string& name, pugi::xml_document& document,
+                    std::string* told) {
   std::string text = readAll(source, name, kMaxXmlBytes);
   // pugixml knows Unicode and Latin-1. Zero bytes are those of UTF-16 and UTF-32.
   const bool is_other = !isUtf8(text) && text.find('\0') == std::string::npos;
-  if (is_other) text = utf8Of(text, declaredEncoding(text.substr(0, 200)));
+  if (is_other) text = utf8Of(text, declaredEncoding(text.substr(0, 200)), told);
   const auto fault = faultOf(text, document, is_other ? pugi::encoding_utf8 : pugi::encoding_auto);
   if (!fault) return source.failure();
   // Of a file that was cut, the fault is in its last element.

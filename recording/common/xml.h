@@ -16,8 +16,10 @@ constexpr std::size_t kMaxXmlBytes = std::size_t{256} << 20;
 /// @throws Error (bad_input) that names the file and, in a faulty one, the line
 void loadXmlFile(const std::string& file, pugi::xml_document& document);
 /// @param name  of the file, for messages
+/// @param told  receives how letters are read that are not in the stated encoding; may be null
 /// @return where the file was cut, if it was: the document has what stands before; empty: it is whole
-std::string loadXml(ByteSource& source, const std::string& name, pugi::xml_document& document);
+std::string loadXml(ByteSource& source, const std::string& name, pugi::xml_document& document,
+                    std::string* told = nullptr);
 /// The reason why a text is no XML document; empty if it is one.
 std::string parseXml(std::string_view text, pugi::xml_document& document);
 

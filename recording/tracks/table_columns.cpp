@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "emscape/base/error.h"
@@ -145,8 +146,36 @@ bool measures(const std::string& told, Column column) {
   return isHeight(column) ? is_length : is_angle;
 }
 
-/// A name without its unit and what stands before a dot: "Alt (ft)", "altitude_ft", "alt[m]", "OSD.height
-/// [m]".
+/// Takes a unit that is a word of a name out of it: "altitude_ft", "altitude feet", "alt in feet msl"; a
+/// short one at its end.
+std::string unitTakenFrom(std::string& name) {
+  static const std::set<std::string> kAnywhere{
+      "ft",    "feet", "foot", "metres",       "meters",       "metre",
+      "meter", "deg",  "rad",  "degrees",      "seconds",      "km",
+      "ms",    "us",   "ns",   "milliseconds", "microseconds", "nanoseconds"};
+  static const std::set<std::string> kAtEnd{"_m", "_s", "_utc", " m", " s"};
+  constexpr const char* kBetween = " _-,/";
+  for (std::size_t at = name.find_first_of(kBetween); at != std::string::npos;
+       at = name.find_first_of(kBetween, at + 1)) {
+    const std::size_t end = std::min(name.find_first_of(kBetween, at + 1), name.size());
+    const std::string unit = name.substr(at + 1, end - at - 1);
+    const bool is_unit =
+        kAnywhere.count(unit) != 0 || (end == name.size() && kAtEnd.count(name.substr(at)) != 0);
+    if (!is_unit || at == 0) continue;
+    name.erase(at, end - at);
+    if (endsWith(name.substr(0, at), " in") || endsWith(name.substr(0, at), "_in")) name.erase(at - 3, 3);
+    return unit == "foot" ? "ft" : unit;
+  }
+  for (const char* const unit : {"feet", "meters", "metres"}) {  // "AltitudeFeet"
+    if (name.size() <= std::string_view(unit).size() || !endsWith(name, unit)) continue;
+    name.resize(name.size() - std::string_view(unit).size());
+    return unit;
+  }
+  return "";
+}
+
+/// A name without its unit and what stands before a dot: "Alt (ft)", "altitude_ft", "Altitude feet",
+/// "alt[m]", "OSD.height [m]".
 std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
   std::string name = lowerCase(told), unit;
   const std::size_t at = name.find_first_of("([");
@@ -155,14 +184,8 @@ std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
     name.resize(at);
   }
   name.erase(0, name.rfind('.') + 1);
-  for (const char* end : {"ft", "m", "deg", "rad", "s", "km", "ms", "us", "ns", "utc"}) {
-    const std::string ending = std::string("_") + end;
-    if (name.size() > ending.size() && endsWith(name, ending)) {
-      unit = end;
-      name.resize(name.size() - ending.size());
-      break;
-    }
-  }
+  const std::string word = unitTakenFrom(name);
+  if (!word.empty()) unit = word;
   name.erase(
       std::remove_if(name.begin(), name.end(), [](char c) { return c == ' ' || c == '_' || c == '#'; }),
       name.end());

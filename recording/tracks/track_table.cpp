@@ -92,6 +92,7 @@ class TableReader {
     recorder_.tellObjectsApartBy(objectsRemedy());
     Recording recording = recorder_.finish();
     recording.has_times_of_day = has_times_of_day_;
+    if (!letters_told_.empty()) recording.tally.notes.push_back(letters_told_);
     tellUnused(recording.tally);
     tellLongSteps(recording.tally);
     return recording;
@@ -101,6 +102,7 @@ class TableReader {
   void takeHeader(std::string_view line, long long number) {
     separator_ = separatorOf(line);
     header_ = headerOf(line);
+    if (!isUtf8(line)) utf8Of(line, "", &letters_told_);
     const std::vector<std::string>& header = header_;
     columns_ = columnsOf(header, options_);
     takeUnitsAbove();
@@ -397,9 +399,8 @@ class TableReader {
     return bad(fmt::format("its position '{}' cannot be read", printableText(text)));
   }
 
-  /// Letters of other encodings than UTF-8 as Latin-1, so that different ids stay different.
-  static std::string idText(const std::string& id) {
-    return printableText(isUtf8(id) ? id : utf8Of(id, "LATIN1"));
+  std::string idText(const std::string& id) {
+    return printableText(isUtf8(id) ? id : utf8Of(id, "", &letters_told_));
   }
 
   /// It has both coordinates in one column.
@@ -480,7 +481,7 @@ class TableReader {
     recorder_.add(recorder_.objectOf(id == nullptr ? stem_ : idText(*id)), pose, location_);
   }
 
-  std::string name_, stem_, location_;
+  std::string name_, stem_, location_, letters_told_;
   const ReadOptions& options_;
   TrackRecorder recorder_;
   std::vector<std::string> header_, units_;  ///< units_: the last comment above the header

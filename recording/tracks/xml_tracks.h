@@ -45,9 +45,11 @@ template <class Reader>
 Recording readXmlTracks(ByteSource& source, const std::string& name, const ReadOptions& options,
                         const char* root) {
   pugi::xml_document document;
-  const std::string torn = loadXml(source, name, document);
+  std::string told;
+  const std::string torn = loadXml(source, name, document, &told);
   Recording recording = Reader(name, options).read(childOf(document, root));
   recording.tally.torn = torn;
+  if (!told.empty()) recording.tally.notes.push_back(told);
   return recording;
 }
 

@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 #include <vector>
 
+#include "base/large_array.h"
 #include "base/memory.h"
 #include "base/text/utf8.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "render/annotate/text_setter.h"
 #include "render/picture/bytes_over.h"
 
@@ -30,7 +33,7 @@ Point2 beginOf(const std::string& text, double size_px, Weight weight, Align ali
 }
 
 /// @throws Error for a picture beyond Cairo's limit, or with its encoded copies beyond the memory
-cairo_surface_t* imageSurface(ImageSize size) {
+std::shared_ptr<std::vector<std::uint32_t>> noPixels(ImageSize size) {
   constexpr int kMaxSide = 32767;
   constexpr std::size_t kBytesPerPixel = 12;
   const std::string what =
@@ -41,7 +44,9 @@ cairo_surface_t* imageSurface(ImageSize size) {
   }
   requireMemory({what, static_cast<std::size_t>(size.count()) * kBytesPerPixel, "a smaller one takes less"},
                 {});
-  return cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size.width, size.height);
+  auto pixels = std::make_shared<std::vector<std::uint32_t>>();
+  resizeInParts(*pixels, static_cast<std::size_t>(size.count()));
+  return pixels;
 }
 
 cairo_status_t append(void* text, const unsigned char* data, unsigned int length) {
@@ -59,7 +64,18 @@ bool overlap(const Rect& a, const Rect& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-Canvas::Canvas(ImageSize size) : Canvas(size, imageSurface(size)) {}
+Canvas::Canvas(ImageSize size)
+    : Canvas([&] {
+        struct Held {
+          std::shared_ptr<std::vector<std::uint32_t>> pixels;
+          std::shared_ptr<cairo_surface_t> surface;  // is destroyed first
+        };
+        const auto pixels = noPixels(size);
+        Canvas canvas(size, pixels->data());
+        const auto held = std::make_shared<Held>(Held{pixels, canvas.surface_});
+        canvas.surface_ = std::shared_ptr<cairo_surface_t>(held, held->surface.get());
+        return canvas;
+      }()) {}
 
 Canvas::Canvas(ImageSize size, std::uint32_t* pixels)
     : Canvas(size, cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(pixels),
@@ -97,7 +113,7 @@ Image8 Canvas::pixels() const {
   const int stride = cairo_image_surface_get_stride(surface_.get());
   Image8 image;
   image.size = size_;
-  image.rgba.resize(static_cast<std::size_t>(size_.count()) * 4);
+  resizeInParts(image.rgba, static_cast<std::size_t>(size_.count()) * 4);
   parallelFor(size_.height, kRowsAtOnce, [&](int begin, int end) {
     for (int y = begin; y < end; ++y) {
       const auto* row =
@@ -125,6 +141,7 @@ void Canvas::changeRows(const std::function<void(int y, std::uint32_t* row)>& ch
 }
 
 void Canvas::setInk(const Ink& ink) const {
+  checkpoint();
   cairo_set_source_rgba(cairo_.get(), ink.color.r, ink.color.g, ink.color.b, ink.alpha);
 }
 

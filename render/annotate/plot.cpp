@@ -9,6 +9,7 @@
 
 #include "base/files/whole_file.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "emscape/render/annotate/legend.h"
 
 namespace emscape::render {
@@ -208,6 +209,7 @@ bool isPlotFile(const std::string& file) {
 }
 
 void drawPlot(ImageSize size, const std::string& file, const std::function<void(Canvas&)>& draw) {
+  const WorkPart part("drawing " + std::filesystem::path(file).filename().string(), 0, 0);
   Canvas canvas = isSvg(file) ? Canvas::forSvg(size) : Canvas(size);
   draw(canvas);
   if (isSvg(file)) {

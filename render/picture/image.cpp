@@ -3,39 +3,39 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <limits>
+#include <new>
+#include <utility>
 
 #include "base/files/whole_file.h"
+#include "base/large_array.h"
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "render/cast/rgba.h"
 
 namespace emscape::render {
 namespace {
 
-/// PNG requires colours that are not premultiplied.
-std::vector<std::uint8_t> straightAlpha(const Image8& image) {
-  std::vector<std::uint8_t> straight(image.rgba);
-  for (std::size_t i = 0; i < straight.size(); i += 4) {
-    const int alpha = straight[i + 3];
-    if (alpha == 0 || alpha == 255) continue;
-    for (std::size_t c = i; c < i + 3; ++c) {
-      straight[c] = static_cast<std::uint8_t>(std::min(255, (straight[c] * 255 + alpha / 2) / alpha));
+/// A row without premultiplication, as PNG requires.
+void setStraightRow(const std::uint8_t* from, int width, std::uint8_t* to) {
+  for (int x = 0; x < width; ++x, from += 4, to += 4) {
+    const int alpha = from[3];
+    for (int c = 0; c < 3; ++c) {
+      to[c] = alpha == 0 || alpha == 255
+                  ? from[c]
+                  : static_cast<std::uint8_t>(std::min(255, (from[c] * 255 + alpha / 2) / alpha));
     }
+    to[3] = from[3];
   }
-  return straight;
 }
 
-std::vector<std::uint8_t> withoutAlpha(const Image8& image) {
-  std::vector<std::uint8_t> rgb;
-  rgb.reserve(image.rgba.size() / 4 * 3);
-  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-    rgb.insert(rgb.end(), image.rgba.begin() + static_cast<std::ptrdiff_t>(i),
-               image.rgba.begin() + static_cast<std::ptrdiff_t>(i) + 3);
-  }
-  return rgb;
+void setOpaqueRow(const std::uint8_t* from, int width, std::uint8_t* to) {
+  for (int x = 0; x < width; ++x, from += 4, to += 3) std::copy_n(from, 3, to);
 }
 
 bool isOpaque(const Image8& image) {
@@ -44,6 +44,74 @@ bool isOpaque(const Image8& image) {
   }
   return true;
 }
+
+/// Encodes a PNG file in memory, row by row, with little compression.
+class PngEncoder {
+ public:
+  PngEncoder(ImageSize size, bool has_alpha) {
+    png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, this, onFault, [](png_structp, const char*) {});
+    info_ = png_ == nullptr ? nullptr : png_create_info_struct(png_);
+    if (info_ == nullptr) {
+      png_destroy_write_struct(&png_, nullptr);
+      throw std::bad_alloc();
+    }
+    run([&] {
+      png_set_write_fn(png_, this, append, nullptr);
+      png_set_IHDR(png_, info_, static_cast<png_uint_32>(size.width), static_cast<png_uint_32>(size.height),
+                   8, has_alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                   PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+      png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+      png_write_info(png_, info_);
+      png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_NO_FILTERS);
+      constexpr int kFast = 3;
+      png_set_compression_level(png_, kFast);
+    });
+  }
+  ~PngEncoder() { png_destroy_write_struct(&png_, &info_); }
+  PngEncoder(const PngEncoder&) = delete;
+  PngEncoder& operator=(const PngEncoder&) = delete;
+
+  void addRow(const std::uint8_t* row) {
+    run([&] { png_write_row(png_, row); });
+  }
+  std::string finish() {
+    run([&] { png_write_end(png_, nullptr); });
+    return std::move(encoded_);
+  }
+
+ private:
+  /// @param calls  of libpng, from which a fault jumps back: no objects with destructors
+  template <class Calls>
+  void run(const Calls& calls) {
+    if (setjmp(png_jmpbuf(png_)) == 0) return calls();
+    throw Error(ErrorCode::other, "cannot encode a picture: " + fault_);
+  }
+  static void onFault(png_structp png, const char* message) {
+    static_cast<PngEncoder*>(png_get_error_ptr(png))->setFault(message);
+    png_longjmp(png, 1);
+  }
+  static void append(png_structp png, png_bytep bytes, std::size_t count) {
+    if (!static_cast<PngEncoder*>(png_get_io_ptr(png))->add(bytes, count)) png_error(png, "out of memory");
+  }
+  void setFault(const char* message) noexcept {
+    try {
+      fault_ = message;
+    } catch (const std::bad_alloc&) {
+    }
+  }
+  bool add(const png_byte* bytes, std::size_t count) noexcept {
+    try {
+      encoded_.append(reinterpret_cast<const char*>(bytes), count);
+      return true;
+    } catch (const std::bad_alloc&) {
+      return false;
+    }
+  }
+
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+  std::string encoded_, fault_;
+};
 
 }  // namespace
 
@@ -63,7 +131,7 @@ ImageSize parseImageSize(const std::string& text) {
 Image8 quantize(const Image& image) {
   Image8 result;
   result.size = image.size;
-  result.rgba.resize(image.pixels.size() * 4);
+  resizeInParts(result.rgba, image.pixels.size() * 4);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const Rgba& pixel = image.pixels[i];
     result.rgba[4 * i] = quantized(pixel.r);
@@ -75,24 +143,19 @@ Image8 quantize(const Image& image) {
 }
 
 std::string encodePng(const Image8& image) {
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  png.width = static_cast<png_uint_32>(image.size.width);
-  png.height = static_cast<png_uint_32>(image.size.height);
   const bool opaque = isOpaque(image);
-  png.format = opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
-  png.flags = PNG_IMAGE_FLAG_FAST;
-  const std::vector<std::uint8_t> pixels = opaque ? withoutAlpha(image) : straightAlpha(image);
-  png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
-  std::string encoded(bytes, '\0');
-  if (png_image_write_to_memory(&png, encoded.data(), &bytes, 0, pixels.data(), 0, nullptr) == 0) {
-    throw Error(ErrorCode::other, std::string("cannot encode a picture: ") + png.message);
+  PngEncoder encoder(image.size, !opaque);
+  std::vector<std::uint8_t> row(static_cast<std::size_t>(image.size.width) * 4);
+  for (int y = 0; y < image.size.height; ++y) {
+    checkpoint();
+    (opaque ? setOpaqueRow : setStraightRow)(image.at(0, y), image.size.width, row.data());
+    encoder.addRow(row.data());
   }
-  encoded.resize(bytes);
-  return encoded;
+  return encoder.finish();
 }
 
 void writePng(const std::string& file, const Image8& image) {
+  const WorkPart part("writing " + std::filesystem::path(file).filename().string(), 0, 0);
   const std::string encoded = encodePng(image);
   writeWhole(file, [&](std::ostream& out) { out << encoded; });
 }

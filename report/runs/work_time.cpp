@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "emfield/ground/ground_posts.h"
 #include "emfield/solver/beam_positions.h"
@@ -34,6 +36,7 @@ constexpr double kArc_ns = 4;            ///< an arc of looks or passes at a vox
 constexpr double kPosition_ns = 4;       ///< a position of a beam, for occupancy
 constexpr double kProduct_ns = 3;        ///< a channel's value
 constexpr double kPatternEntry_ns = 10;  ///< an entry of the pattern of an interval, per tilt or dwell
+constexpr double kPathsAlone_ns = 1e8;   ///< of a jammer to radars, by a march
 constexpr double kArrayEntry = 3;        ///< times as much for the pattern of a phased array
 
 double metresApart(const GeodeticPosition& a, const GeodeticPosition& b) {
@@ -144,6 +147,72 @@ double voxel_ns(const emfield::FieldPlan& plan, std::size_t channel, int e,
          kArc_ns * arcs;
 }
 
+/// How often in a run the fields of channels are computed anew.
+class ChangedSteps {
+ public:
+  ChangedSteps(const emfield::FieldPlan& plan, const std::vector<double>& times_s)
+      : plan_(plan), steps_(double(times_s.size())) {
+    const Scenario& scenario = *plan.scenario;
+    const bool is_instant = scenario.output.interval.kind == IntervalKind::instant;
+    for (const Emitter& emitter : scenario.emitters) {
+      const bool moves = movesAt(emitter.platform);
+      bool turns = emitter.scan.kind == scenario::ScanKind::victim && movesAt(emitter.scan.victim);
+      std::optional<emfield::IntervalBeam> beam;
+      bool is_same_sweep = true;
+      if (is_instant) {
+        turns = turns || scenario::scanCycle_s(emitter.scan) > 0;
+      } else if (emitter.enabled) {
+        beam = beamOf(scenario, emitter, times_s.front());
+        is_same_sweep =
+            times_s.size() == 1 || beamOf(scenario, emitter, times_s[1]).of_sweep == beam->of_sweep;
+        turns = turns || !is_same_sweep;
+      }
+      const double switched = std::min(steps_, 1 + 2 * double(emitter.active_s.size()));
+      emitters_.push_back({moves, moves || turns, is_same_sweep, switched, std::move(beam)});
+    }
+  }
+
+  const std::optional<emfield::IntervalBeam>& beam(std::size_t e) const { return emitters_[e].beam; }
+  /// Intervals whose sweep is another than that of the one before; the first is one.
+  double ofSweep(std::size_t e) const { return emitters_[e].is_same_sweep ? 1 : steps_; }
+  /// Steps at which an emitter is elsewhere than at the step before; the first is one.
+  double ofPlace(std::size_t e) const { return emitters_[e].moves ? steps_ : 1; }
+  /// Steps at which the sum of a channel changes. Beams of radars that follow targets do not turn by
+  /// themselves.
+  double ofChannel(std::size_t c) const {
+    const std::vector<int>& members = plan_.channels[c].emitters;
+    const std::vector<emfield::RadarTask>& radars = plan_.channel_plans[c].radars;
+    double changed = 1;
+    for (std::size_t n = 0; n < members.size(); ++n) {
+      const OfEmitter& emitter = emitters_[static_cast<std::size_t>(members[n])];
+      const bool follows = n < radars.size() && radars[n].look.kind != emfield::LookKind::held &&
+                           plan_.scenario->output.interval.kind == IntervalKind::instant;
+      changed =
+          std::max({changed, emitter.switched, (follows ? emitter.moves : emitter.changes) ? steps_ : 1});
+    }
+    for (const int j : plan_.channels[c].jammers) {
+      const OfEmitter& jammer = emitters_[static_cast<std::size_t>(j)];
+      changed = std::max({changed, jammer.switched, jammer.changes ? steps_ : 1});
+    }
+    return changed;
+  }
+
+ private:
+  struct OfEmitter {
+    bool moves = false, changes = false, is_same_sweep = true;
+    double switched = 1;                        ///< steps at which it begins or ends, at most
+    std::optional<emfield::IntervalBeam> beam;  ///< of the first interval; none: of an instant
+  };
+
+  bool movesAt(int platform) const {
+    return platform >= 0 && plan_.scenario->platforms[static_cast<std::size_t>(platform)].track.size() > 1;
+  }
+
+  const emfield::FieldPlan& plan_;
+  double steps_;
+  std::vector<OfEmitter> emitters_;
+};
+
 }  // namespace
 
 WorkTime workTimeOf(const Scenario& scenario, const scenario::Terrain* terrain,
@@ -151,16 +220,14 @@ WorkTime workTimeOf(const Scenario& scenario, const scenario::Terrain* terrain,
   const emfield::FieldPlan plan =
       emfield::makePlan(std::make_shared<const Scenario>(scenario), emfield::FieldOptions());
   const std::vector<double> times_s = scenario::timesOf(scenario.clock);
-  const auto steps = double(times_s.size());
+  const ChangedSteps changed(plan, times_s);
   const auto voxels = double(scenario.region.dims.count());
   const double columns = double(scenario.region.dims.x) * scenario.region.dims.y;
   const double post_m = emfield::postSpacing_m(terrain) / 2;
-  const bool is_instant = scenario.output.interval.kind == IntervalKind::instant;
   double losses_ns = kColumn_ns * columns, patterns_ns = 0, sums_ns = 0;
   for (std::size_t e = 0; e < scenario.emitters.size(); ++e) {
     const Emitter& emitter = scenario.emitters[e];
     if (!emitter.enabled) continue;
-    const bool moves = scenario.platforms[static_cast<std::size_t>(emitter.platform)].track.size() > 1;
     const propagation::ModelCost& cost = propagation::modelInfo(emitter.propagation.model).cost;
     const double posts = terrain == nullptr ? 0 : meanPath_m(scenario, emitter) / post_m;
     double once_ns = (cost.column_ns + cost.post_ns * posts) * columns + 1e9 * cost.emitter_s +
@@ -168,9 +235,9 @@ WorkTime workTimeOf(const Scenario& scenario, const scenario::Terrain* terrain,
     for (const emfield::EmitterChoice& choice : choices) {
       if (choice.emitter == emitter.name) once_ns += 1e9 * choice.time_s;
     }
-    losses_ns += once_ns * (moves ? steps : 1);
-    std::optional<emfield::IntervalBeam> beam;
-    if (!is_instant) beam = beamOf(scenario, emitter, times_s.front());
+    // Of jammers of radars alone only the paths to these.
+    losses_ns += (plan.needs[e].any ? once_ns : std::min(once_ns, kPathsAlone_ns)) * changed.ofPlace(e);
+    const std::optional<emfield::IntervalBeam>& beam = changed.beam(e);
     bool has_power = false;
     for (std::size_t c = 0; c < plan.channels.size(); ++c) {
       const std::vector<int>& members = plan.channels[c].emitters;
@@ -178,16 +245,16 @@ WorkTime workTimeOf(const Scenario& scenario, const scenario::Terrain* terrain,
       has_power |= plan.channel_plans[c].reducesPower();
       if (plan.channel_plans[c].occupancy_threshold_wm2 > 0)
         patterns_ns += kPatternEntry_ns * reachEntries(emitter, beam->of_sweep);
-      sums_ns += voxel_ns(plan, c, static_cast<int>(e), beam) * voxels * steps;
+      sums_ns += voxel_ns(plan, c, static_cast<int>(e), beam) * voxels * changed.ofChannel(c);
     }
     if (beam && has_power && !emfield::stays(beam->of_sweep)) {
-      const bool is_the_same = steps > 1 && beamOf(scenario, emitter, times_s[1]).of_sweep == beam->of_sweep;
       patterns_ns += kPatternEntry_ns *
                      patternEntries(emitter, beam->of_sweep, scenario.output.interval.kind) *
-                     (is_the_same ? 1 : steps);
+                     changed.ofSweep(e);
     }
   }
-  sums_ns += kProduct_ns * voxels * double(plan.channels.size()) * steps;
+  for (std::size_t c = 0; c < plan.channels.size(); ++c)
+    sums_ns += kProduct_ns * voxels * changed.ofChannel(c);
   return {1e-9 * losses_ns, 1e-9 * patterns_ns, 1e-9 * sums_ns};
 }
 

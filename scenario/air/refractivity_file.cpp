@@ -14,6 +14,7 @@
 #include "document/text_lines.h"
 #include "emscape/base/error.h"
 #include "propagation/air/moist_air.h"
+#include "scenario/terrain/file_names.h"
 
 namespace emscape::scenario {
 namespace {
@@ -236,6 +237,8 @@ ThinnedLevels thinnedToLimit(const std::vector<RefractivityLevel>& levels) {
 }
 
 RefractivityFile readRefractivity(const std::string& file) {
+  if (const std::string packed = packedFileText(file); !packed.empty())
+    throw Error(ErrorCode::bad_input, {file, 0, 0}, "a profile is read from a .csv: " + packed);
   return CsvProfiles(file).read();
 }
 

@@ -226,6 +226,8 @@ double geometricHeight_m(double geopotential_m) {
 
 RefractivityFile readSounding(const std::string& file, std::optional<std::int64_t> time_ms) {
   const Open open = readerOf(file);
+  if (const std::string packed = open == nullptr ? packedFileText(file) : ""; !packed.empty())
+    throw Error(ErrorCode::bad_input, {file, 0, 0}, "soundings are read from one .txt or .csv: " + packed);
   const std::unique_ptr<SoundingArchive> archive = (open != nullptr ? open : openIgra)(file);
   std::vector<SoundingRecord> records = archive->records();
   if (records.empty())

@@ -32,6 +32,7 @@ struct MsiFile {
   bool is_gain_unit_assumed = false;
   std::optional<double> tilt_deg;  ///< downwards
   std::optional<double> width_az_deg, width_el_deg;
+  StatedBand band;
   std::vector<std::string> ignored;  ///< first words of lines that do not describe the pattern
   std::vector<CutRow> horizontal, vertical;
 };
@@ -62,6 +63,8 @@ class MsiReader {
       content_.gain_dbi = gainIn(value);
     } else if (keyword == "NAME") {
       content_.name = std::string(value.text);
+    } else if (const auto band = keyword == "FREQUENCY" ? bandIn(value.text) : std::nullopt) {
+      content_.band = *band;
     } else if (keyword == "TILT" || keyword == "ELECTRICAL_TILT") {
       // TILT often contains a word (ELECTRICAL, MECHANICAL) instead of an angle.
       if (const auto tilt_deg = numberOrCommaIn(value.text)) content_.tilt_deg = tilt_deg;
@@ -145,6 +148,19 @@ class MsiReader {
     fail(unit, fmt::format("unit '{}' of GAIN; allowed are dBd (the default) and dBi", unit.text));
   }
 
+  /// "900", "(MHz) 900" or "880-960", in MHz; none for other texts.
+  static std::optional<StatedBand> bandIn(std::string_view text) {
+    std::string numbers;
+    for (const char c : upperCase(text)) {
+      if (std::string_view("[]() \tMHZ").find(c) == std::string_view::npos) numbers += c;
+    }
+    const std::size_t dash = std::min(numbers.find('-'), numbers.size());
+    const auto low_mhz = numberOrCommaIn(numbers.substr(0, dash));
+    const auto high_mhz = dash < numbers.size() ? numberOrCommaIn(numbers.substr(dash + 1)) : low_mhz;
+    if (!low_mhz || !high_mhz || !(*low_mhz > 0 && *high_mhz >= *low_mhz)) return std::nullopt;
+    return StatedBand{*low_mhz * 1e6, *high_mhz * 1e6};
+  }
+
   const TextLines& text_;
   std::size_t next_ = 0;
   MsiFile content_;
@@ -205,6 +221,7 @@ PatternFile readMsiPattern(const std::string& file) {
         "{}: its GAIN has no unit and is taken as dBd, as the format defines: {:g} dBi. If it is in dBi, "
         "'gain_dbi: {:g}' of the antenna states it",
         file, *content.gain_dbi, *content.gain_dbi - kDipoleGain_dbi);
+  pattern.stated_band = content.band;
   pattern.stated_az_deg = content.width_az_deg;
   pattern.stated_el_deg = content.width_el_deg;
   turnGains(file, "HORIZONTAL", content.horizontal, pattern);

@@ -39,6 +39,7 @@ struct NsmaCut {
 struct NsmaContent {
   std::string maker, model, gain_units;
   std::optional<double> gain, width_az_deg, width_el_deg, tilt_deg;
+  StatedBand band;
   TextField gain_field;
   std::vector<NsmaCut> cuts;
   std::vector<std::string> ignored;
@@ -85,6 +86,10 @@ class NsmaReader {
       content_.width_el_deg = document::numberOrCommaIn(value.text);
     } else if (key == "ELTILT") {
       content_.tilt_deg = document::numberOrCommaIn(value.text);
+    } else if (key == "LOWFRQ" || key == "HGHFRQ") {
+      const std::optional<double> frequency_mhz = document::numberOrCommaIn(value.text);
+      double& end_hz = key == "LOWFRQ" ? content_.band.lowest_hz : content_.band.highest_hz;
+      if (frequency_mhz && *frequency_mhz > 0) end_hz = *frequency_mhz * 1e6;
     } else if (key == "PATCUT") {
       content_.cuts.emplace_back();
       content_.cuts.back().plane = document::upperCase(value.text);
@@ -178,6 +183,7 @@ class NsmaPattern {
     if (pattern_.name.empty()) pattern_.name = "NSMA pattern";
     readUnits();
     pattern_.stated_az_deg = content_.width_az_deg;
+    pattern_.stated_band = content_.band;
     std::vector<CutRow> azimuth = chosen(&NsmaCut::isAzimuth, "azimuth");
     std::vector<CutRow> elevation = chosen(&NsmaCut::isElevation, "elevation");
     for (const NsmaCut& cut : content_.cuts) {

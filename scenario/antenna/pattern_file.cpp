@@ -11,6 +11,7 @@
 #include "document/text_lines.h"
 #include "emscape/base/log.h"
 #include "scenario/antenna/shapes.h"
+#include "scenario/terrain/file_names.h"
 
 namespace emscape::scenario {
 namespace {
@@ -55,6 +56,8 @@ void addWidthContradiction(std::vector<std::string>& warnings, const std::string
 }  // namespace
 
 PatternFile readPatternFile(const std::string& file) {
+  if (const std::string packed = packedFileText(file); !packed.empty())
+    throw Error(ErrorCode::bad_input, {file, 0, 0}, "an antenna file is read unpacked: " + packed);
   const std::string ending = endingOf(file);
   if (ending == ".AZ") return readSplat(file, splatPartner(file, ".el", ".EL"));
   if (ending == ".EL") return readSplat(splatPartner(file, ".az", ".AZ"), file);
@@ -133,9 +136,11 @@ AntennaPtr antennaOf(const std::string& file, const PatternFile& pattern, double
   return antenna;
 }
 
-AntennaPtr readAntenna(const std::string& file, double gain_dbi) {
+AntennaPtr readAntenna(const std::string& file, double gain_dbi, StatedBand* band) {
   std::vector<std::string> warnings;
-  AntennaPtr antenna = antennaOf(file, readPatternFile(file), gain_dbi, warnings);
+  const PatternFile pattern = readPatternFile(file);
+  if (band != nullptr) *band = pattern.stated_band;
+  AntennaPtr antenna = antennaOf(file, pattern, gain_dbi, warnings);
   for (const std::string& warning : warnings) logWarning(warning);
   return antenna;
 }

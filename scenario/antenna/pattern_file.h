@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenario/antenna/cut.h"
+#include "scenario/antenna/shapes.h"
 #include "scenario/antenna/tables.h"
 
 namespace emscape::scenario {
@@ -16,6 +17,7 @@ struct PatternFile {
   std::optional<double> gain_dbi;
   std::string gain_warning;                            ///< what was assumed of it
   std::optional<double> stated_az_deg, stated_el_deg;  ///< beamwidths that the file states
+  StatedBand stated_band;
   GridNodes nodes;
   std::vector<float> amplitudes;      ///< at the nodes, azimuth fastest
   std::vector<std::string> notes;     ///< what was ignored and how angles were understood, one sentence each

@@ -2,6 +2,7 @@
 /// value and its range.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -76,6 +77,11 @@ AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& eleva
 /// @throws Error (bad_input) with file, line and column; a missing row is named by its pair
 AntennaPtr readCsvGrid(const std::string& file, double gain_dbi);
 
+/// Frequencies (Hz) for which an antenna file states its pattern; of a single frequency: twice that.
+struct StatedBand {
+  double lowest_hz = 0, highest_hz = HUGE_VAL;
+};
+
 /// Reads a file of any format (scenario/antenna/pattern_file.h): MSI/Planet (.msi, .pln), NSMA (.adf), STK
 /// (.ant, .pattern), SPLAT! (.az, .el), CSV (.csv).
 ///
@@ -84,7 +90,9 @@ AntennaPtr readCsvGrid(const std::string& file, double gain_dbi);
 /// with tilt has its maximum at a positive angle; the cut includes the tilt; TILT and ELECTRICAL_TILT are
 /// informative.
 /// @param gain_dbi  NaN: the file's own
+/// @param band      receives the frequencies that the file states; may be null
 /// @throws Error (bad_input) with file, line and column; without a gain
-AntennaPtr readAntenna(const std::string& file, double gain_dbi = std::numeric_limits<double>::quiet_NaN());
+AntennaPtr readAntenna(const std::string& file, double gain_dbi = std::numeric_limits<double>::quiet_NaN(),
+                       StatedBand* band = nullptr);
 
 }  // namespace emscape::scenario

@@ -29,7 +29,7 @@ Taper taperOf(const Section& section) {
 constexpr std::size_t kMaxNamedFileBytes = std::size_t{64} << 20, kMaxTrackBytes = std::size_t{256} << 20;
 
 /// @param default_dbi  gain of a section without one; NaN: by formula
-AntennaPtr makeAntenna(const Section& section, const ParseContext& context,
+AntennaPtr makeAntenna(const Section& section, ParseContext& context,
                        double default_dbi = std::numeric_limits<double>::quiet_NaN()) {
   const double azimuth_deg = section.number("beamwidth_az_deg"),
                elevation_deg = section.number("beamwidth_el_deg");
@@ -66,9 +66,11 @@ AntennaPtr makeAntenna(const Section& section, const ParseContext& context,
                              rows, spacing_wavelengths, section.number("element_exponent"), side_lobe_db,
                              taper);
     }
-    case AntennaForm::file:
-      return readAntenna(context.resolve(section.text("file")),
-                         gainOr(std::numeric_limits<double>::quiet_NaN()));
+    case AntennaForm::file: {
+      const std::string file = context.resolve(section.text("file"));
+      return readAntenna(file, gainOr(std::numeric_limits<double>::quiet_NaN()),
+                         &context.files.antenna_bands[file]);
+    }
     case AntennaForm::cuts:
       return readCsvCuts(context.resolve(section.text("azimuth_file")),
                          context.resolve(section.text("elevation_file")), section.number("gain_dbi"));
@@ -77,7 +79,7 @@ AntennaPtr makeAntenna(const Section& section, const ParseContext& context,
 }
 
 /// An antenna; a gain by formula is limited to the pattern's directivity.
-AntennaPtr makeConsistentAntenna(const Section& section, const ParseContext& context) {
+AntennaPtr makeConsistentAntenna(const Section& section, ParseContext& context) {
   AntennaPtr antenna = makeAntenna(section, context);
   const bool has_formula =
       !section.has("gain_dbi") && section.choice<AntennaForm>("pattern") != AntennaForm::file;
@@ -472,6 +474,8 @@ AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
   AntennaPtr& antenna = context.files.antennas[description];
   if (!antenna && context.before != nullptr && context.before->antennas.count(description) != 0) {
     antenna = context.before->antennas.at(description);
+    context.files.antenna_bands.insert(context.before->antenna_bands.begin(),
+                                       context.before->antenna_bands.end());
   }
   try {
     if (!antenna) antenna = makeConsistentAntenna(section, context);

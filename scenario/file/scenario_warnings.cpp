@@ -134,6 +134,39 @@ void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& co
   of_low.addTo(context.problems);
 }
 
+/// Warns about emitters at frequencies for which the antenna's file does not state its pattern. A file of one
+/// frequency is used around it.
+void warnOfAntennaFrequencies(const Scenario& scenario, const Section& root, ParseContext& context) {
+  constexpr double kAround = 1.25;
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Emitter& emitter = scenario.emitters[i];
+    const Section antenna = sections[i].section("antenna");
+    if (!antenna.has("file")) continue;
+    const auto stated_band = context.files.antenna_bands.find(context.resolve(antenna.text("file")));
+    if (stated_band == context.files.antenna_bands.end()) continue;
+    const StatedBand& band = stated_band->second;
+    const bool is_one = band.lowest_hz == band.highest_hz;
+    const double around = is_one ? kAround : 1;
+    if (emitter.frequency_hz >= band.lowest_hz / around && emitter.frequency_hz <= band.highest_hz * around)
+      continue;
+    const auto inMegahertz = [](double frequency_hz) { return fmt::format("{:g} MHz", frequency_hz / 1e6); };
+    const std::string stated = is_one                        ? inMegahertz(band.lowest_hz)
+                               : std::isinf(band.highest_hz) ? inMegahertz(band.lowest_hz) + " and above"
+                               : band.lowest_hz == 0
+                                   ? "up to " + inMegahertz(band.highest_hz)
+                                   : inMegahertz(band.lowest_hz) + " to " + inMegahertz(band.highest_hz);
+    warning.add(
+        antenna.locationOf("file"), emitter.name,
+        fmt::format(
+            "emitter '{}' transmits at {}, but the file of its antenna is for {}: gain and pattern may "
+            "be others; a file for that frequency states them",
+            emitter.name, inMegahertz(emitter.frequency_hz), stated));
+  }
+  warning.addTo(context.problems);
+}
+
 constexpr double kNarrow_hz = 100;  ///< no receiver of a radar is, no noise of a jammer
 
 /// Warns about jammers of a few hertz, as 30 for 30e6 Hz, and about those without a bandwidth.
@@ -443,6 +476,7 @@ void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseCon
   warnOfEmittersWithoutBand(scenario, root, context);
   warnOfIdleJammers(scenario, root, context);
   warnOfGains(scenario, root, context);
+  warnOfAntennaFrequencies(scenario, root, context);
   warnOfNarrowReceivers(scenario, root, context);
   warnOfNarrowJammers(scenario, root, context);
   if (context.read_for == ReadFor::series) warnOfLongStep(scenario, root, context);

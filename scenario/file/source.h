@@ -8,12 +8,12 @@
 
 #include "document/document.h"
 #include "document/edited_text.h"
-#include "emscape/scenario/antenna/antenna.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/edit.h"
 #include "emscape/scenario/model/platform.h"
 #include "emscape/scenario/model/target.h"
 #include "scenario/air/refractivity_file.h"
+#include "scenario/antenna/shapes.h"
 #include "scenario/file/recorded_track.h"
 
 namespace emscape::scenario {
@@ -30,8 +30,9 @@ struct NamedFiles {
   std::map<std::string, std::string> digests;  ///< ContentHash of a file's bytes, by its resolved name
   /// By resolved name and, of files of other programs, what the section of the track says.
   std::map<std::string, std::shared_ptr<const TrackFile>> tracks;
-  std::map<std::string, AntennaPtr> antennas;     ///< by the antenna's keys and values, written on one line
-  std::map<std::string, RcsTablePtr> rcs_tables;  ///< valid ones, by resolved name
+  std::map<std::string, AntennaPtr> antennas;       ///< by the antenna's keys and values, written on one line
+  std::map<std::string, StatedBand> antenna_bands;  ///< of antenna files, by resolved name
+  std::map<std::string, RcsTablePtr> rcs_tables;    ///< valid ones, by resolved name
   std::map<std::string, std::shared_ptr<const RefractivityFile>>
       refractivity;                        ///< by name and sounding's time
   document::DocumentNodePtr terrain_node;  ///< null without terrain

@@ -22,4 +22,9 @@ struct PointHeight {
 /// to the ten characters of a shapefile's fields.
 std::optional<HeightReference> heightReferenceOf(std::string_view name);
 
+/// Says that two heights of one place contradict each other: those above mean sea level and above the
+/// ellipsoid differ by the geoid's height. @return empty if they do not, and for other references
+std::string contradictionOfHeights(double latitude_deg, double longitude_deg, const PointHeight& a,
+                                   const PointHeight& b);
+
 }  // namespace emscape::scenario

@@ -15,6 +15,7 @@
 #include "document/text_lines.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/log.h"
 #include "scenario/map/vector_file.h"
 
@@ -61,9 +62,13 @@ bool isPartOfAngle(std::string_view text) {
 /// Columns of a table; npos: it has none.
 struct PointColumns {
   static constexpr std::size_t kNone = std::string::npos;
-  std::size_t latitude = kNone, longitude = kNone, position = kNone, name = kNone, height = kNone;
+  std::size_t latitude = kNone, longitude = kNone, position = kNone, name = kNone;
   std::size_t north_or_south = kNone, east_or_west = kNone;  ///< letters of the directions
-  HeightReference reference = HeightReference::msl;
+  struct Height {
+    std::size_t column;
+    HeightReference reference;
+  };
+  std::vector<Height> heights;  ///< the first is used, the others are compared with it
   bool has_geometry = false;
 
   explicit PointColumns(const std::vector<CsvCell>& header) {
@@ -79,11 +84,7 @@ struct PointColumns {
       take(north_or_south, {"NS", "N/S", "N_S"});
       take(east_or_west, {"EW", "E/W", "E_W"});
       has_geometry = has_geometry || title.find("WKT") != std::string::npos;
-      const auto told = heightReferenceOf(header[i].text);
-      if (height == kNone && told) {
-        height = i;
-        reference = *told;
-      }
+      if (const auto told = heightReferenceOf(header[i].text)) heights.push_back({i, *told});
     }
     if (latitude != kNone && longitude != kNone) {
       position = kNone;
@@ -94,7 +95,8 @@ struct PointColumns {
   bool arePositions() const { return (latitude != kNone || position != kNone) && !has_geometry; }
   bool isUsed(std::size_t column) const {
     return column == latitude || column == longitude || column == position || column == name ||
-           column == height || column == north_or_south || column == east_or_west;
+           (!heights.empty() && column == heights.front().column) || column == north_or_south ||
+           column == east_or_west;
   }
 };
 
@@ -127,7 +129,7 @@ class PointReader {
                                                                        : rounded(wrapLongitude_deg(east_deg));
     }
     if (columns_.name != PointColumns::kNone) point.name = std::string(row.cells[columns_.name].text);
-    if (columns_.height != PointColumns::kNone) point.height = heightIn(row.cells[columns_.height]);
+    for (const PointColumns::Height& of_column : columns_.heights) readHeight(of_column, point);
     return point;
   }
 
@@ -178,14 +180,23 @@ class PointReader {
     }
   }
 
-  /// None for an empty cell.
-  std::optional<PointHeight> heightIn(const CsvCell& cell) const {
-    if (cell.text.empty()) return std::nullopt;
+  void readHeight(const PointColumns::Height& of_column, NamedPoint& point) const {
+    const CsvCell& cell = row_->cells[of_column.column];
+    if (cell.text.empty()) return;
+    const bool is_used = of_column.column == columns_.heights.front().column;
     const std::optional<double> value = document::numberOrCommaIn(cell.text);
-    if (!value)
+    if (!value && is_used)
       fail(cell.column, fmt::format("{} is '{}', not a number of metres",
-                                    kHeightKeys[static_cast<int>(columns_.reference)], cell.text));
-    return PointHeight{columns_.reference, *value};
+                                    kHeightKeys[static_cast<int>(of_column.reference)], cell.text));
+    if (!value) return;
+    const PointHeight height{of_column.reference, *value};
+    if (is_used) {
+      point.height = height;
+    } else if (point.height) {
+      const std::string contradiction =
+          contradictionOfHeights(point.latitude_deg, point.longitude_deg, *point.height, height);
+      if (!contradiction.empty()) fail(cell.column, contradiction);
+    }
   }
 
   const std::string& file_;
@@ -205,6 +216,21 @@ std::optional<HeightReference> heightReferenceOf(std::string_view name) {
       return reference;
   }
   return std::nullopt;
+}
+
+std::string contradictionOfHeights(double latitude_deg, double longitude_deg, const PointHeight& a,
+                                   const PointHeight& b) {
+  constexpr double kTolerance_m = 20;  // of datums of mean sea level
+  if (a.reference == HeightReference::ellipsoid && b.reference == HeightReference::msl)
+    return contradictionOfHeights(latitude_deg, longitude_deg, b, a);
+  if (a.reference != HeightReference::msl || b.reference != HeightReference::ellipsoid) return "";
+  const double geoid_m = geoidUndulation_m(latitude_deg, longitude_deg);
+  if (std::abs(b.height_m - a.height_m - geoid_m) <= kTolerance_m) return "";
+  return fmt::format(
+      "{} is {:g} and {} {:g}; mean sea level is {:.0f} m above the ellipsoid there: rename the column that "
+      "is "
+      "another height, or remove it",
+      a.key(), a.height_m, b.key(), b.height_m, geoid_m);
 }
 
 std::optional<std::vector<NamedPoint>> readPointTable(const std::string& file,

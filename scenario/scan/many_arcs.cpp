@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/math/simd.h"
+#include "emscape/base/work.h"
 
 namespace emscape::scenario {
 namespace {
@@ -119,6 +120,7 @@ void raiseToLargest(const std::vector<double>& power, const std::vector<RowSpan>
   std::vector<TurnedRow> runs{
       TurnedRow(power)};  // runs[n], entry k: the largest of the 2^n entries from k on
   for (const RowSpan& span : spans) {
+    checkpoint();
     if (span.end - span.begin >= count) {
       const double largest = *std::max_element(power.begin(), power.end());
       for (double& value : row) value = std::max(value, largest);

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/large_array.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 #include "emscape/base/work.h"
@@ -58,8 +59,10 @@ std::vector<PowerRow> rowsOf(const PatternView& pattern, const Tilts& tilts, con
                              double elevation_rad) {
   std::vector<PowerRow> rows;
   rows.reserve(tilts.tilts_deg.size());
-  for (const double tilt_deg : tilts.tilts_deg)
+  for (const double tilt_deg : tilts.tilts_deg) {
+    checkpoint();
     rows.emplace_back(pattern, azimuths, elevation_rad, degToRad(tilt_deg));
+  }
   return rows;
 }
 
@@ -90,6 +93,7 @@ class ManyArcs {
     std::vector<std::vector<SweptArc>> arcs(tilts.tilts_deg.size());
     for (std::size_t n = 0; n < sweep.arcs.size(); ++n) arcs[tilts.of_arc[n]].push_back(sweep.arcs[n]);
     for (std::size_t tilt = 0; tilt < arcs.size(); ++tilt) {
+      checkpoint();
       if (pattern == SweptPattern::mean) {
         weights_[tilt] = rowWeightsOf(arcs[tilt], azimuths);
       } else {
@@ -98,13 +102,16 @@ class ManyArcs {
     }
   }
   /// The power of the interval at one elevation, from azimuth 0 on.
-  std::vector<double> powerOf(const std::vector<PowerRow>& rows) const {
-    std::vector<double> power(rows.front().power().size());
-    for (std::size_t tilt = 0; tilt < rows.size(); ++tilt) {
+  std::vector<double> powerOf(const PatternView& view, const Tilts& tilts, const RowAzimuths& azimuths,
+                              double elevation_rad) const {
+    std::vector<double> power(static_cast<std::size_t>(azimuths.count()));
+    for (std::size_t tilt = 0; tilt < tilts.tilts_deg.size(); ++tilt) {
+      checkpoint();
+      const PowerRow row(view, azimuths, elevation_rad, degToRad(tilts.tilts_deg[tilt]));
       if (pattern_ == SweptPattern::mean) {
-        addMean(rows[tilt].power(), weights_[tilt], power);
+        addMean(row.power(), weights_[tilt], power);
       } else {
-        raiseToLargest(rows[tilt].power(), spans_[tilt], power);
+        raiseToLargest(row.power(), spans_[tilt], power);
       }
     }
     return power;
@@ -267,7 +274,6 @@ AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPat
   std::atomic<int> done{0};
   parallelFor(elevations.count(), 16, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
-      checkpoint();
       std::vector<PowerRow> rows =
           rowsOf(sampled.view, tilts, azimuths, degToRad(elevations.angles_deg[static_cast<std::size_t>(e)]));
       amplitudes[static_cast<std::size_t>(e)] = std::sqrt(powerOf(rows, tilts, sweep, 0, pattern));
@@ -302,19 +308,17 @@ AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPatt
   const Tilts tilts(sweep);
   const std::vector<Steering> dwells = steeringsOf(sweep);
   const int count = columns.count();
-  std::vector<float> amplitudes(static_cast<std::size_t>(count) *
-                                static_cast<std::size_t>(elevations.count()));
+  std::vector<float> amplitudes;
+  resizeInParts(amplitudes, static_cast<std::size_t>(count) * static_cast<std::size_t>(elevations.count()));
   std::optional<ManyArcs> many;
   if (sweep.arcs.size() > kFewArcs && !columns.refined) many.emplace(sweep, tilts, count - 1, pattern);
   std::atomic<int> done{0};
   parallelFor(elevations.count(), 8, [&, &columns = columns, &elevations = elevations](int begin, int end) {
     for (int e = begin; e < end; ++e) {
-      checkpoint();
       const double elevation_rad = degToRad(elevations.angles_deg[static_cast<std::size_t>(e)]);
-      std::vector<PowerRow> rows = rowsOf(sampled.view, tilts, azimuths, elevation_rad);
       float* const row = amplitudes.data() + static_cast<std::size_t>(e) * static_cast<std::size_t>(count);
       if (many) {
-        const std::vector<double> power = many->powerOf(rows);
+        const std::vector<double> power = many->powerOf(sampled.view, tilts, azimuths, elevation_rad);
         const int azimuths_of_turn = count - 1;
         for (int a = 0; a < count; ++a) {
           const int from_north = (a + azimuths_of_turn / 2) % azimuths_of_turn;
@@ -322,7 +326,9 @@ AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPatt
         }
         continue;
       }
+      std::vector<PowerRow> rows = rowsOf(sampled.view, tilts, azimuths, elevation_rad);
       for (int a = 0; a < count; ++a) {
+        checkpoint();
         const double azimuth_deg = columns.angles_deg[static_cast<std::size_t>(a)],
                      azimuth_rad = degToRad(azimuth_deg);
         const Vec3d direction{std::cos(elevation_rad) * std::cos(azimuth_rad),

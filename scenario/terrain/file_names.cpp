@@ -1,6 +1,7 @@
 #include "scenario/terrain/file_names.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glob.h>
 
 #include <algorithm>
@@ -8,11 +9,13 @@
 #include <cctype>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <set>
 #include <sstream>
 
 #include "base/geodesy/gdal_file.h"
 #include "base/geodesy/netcdf_header.h"
+#include "base/text/shell_word.h"
 #include "emscape/base/error.h"
 #include "scenario/terrain/file_remedies.h"
 #include "scenario/terrain/gdal_messages.h"
@@ -149,6 +152,25 @@ std::vector<std::string> membersOfZip(const std::string& file) {
   return members;
 }
 
+std::string packedFileText(const std::string& file) {
+  constexpr std::size_t kMaxNames = 4;
+  std::string begin(4, '\0');
+  std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (begin.rfind("\x1F\x8B", 0) == 0)
+    return fmt::format("it is packed by gzip; unpack it (gunzip {}) and name the file in it",
+                       shellWord(file));
+  if (begin != "PK\x03\x04") return "";
+  const GdalMessages quiet;
+  const std::vector<std::string> members = membersOfZip(file);
+  if (members.empty()) return "it is an archive (ZIP) that cannot be read";
+  const auto end = members.begin() + static_cast<std::ptrdiff_t>(std::min(members.size(), kMaxNames));
+  return fmt::format(
+      "it is an archive (ZIP) of {}{}; unpack it (unzip {}) and name {}",
+      fmt::join(members.begin(), end, ", "),
+      members.size() > kMaxNames ? fmt::format(" and {} more", members.size() - kMaxNames) : "",
+      shellWord(file), members.size() == 1 ? "that file" : "one of them");
+}
+
 std::string lowerEnding(const std::string& name) {
   return lower(fs::path(name).extension().string());
 }
@@ -215,8 +237,8 @@ std::vector<ElevationSource> sourcesIn(const std::string& file) {
                 members.empty()
                     ? messages.explain(file + ": cannot be read as a ZIP archive")
                     : fmt::format("{}: none of its {} members is an elevation file by its ending, "
-                                  "such as {}; an archive within it must be unpacked",
-                                  file, members.size(), members.front()));
+                                  "such as {}; unpack it (unzip {}) and name the file that is meant",
+                                  file, members.size(), members.front(), shellWord(file)));
   return sources;
 }
 

@@ -49,6 +49,9 @@ std::string unpackedContent(const ElevationSource& source, std::size_t max_bytes
 /// The members of an archive in ascending order, without those that macOS adds; empty if it cannot be read.
 /// @throws Error (bad_input), without a location, if there are too many
 std::vector<std::string> membersOfZip(const std::string& file);
+/// What an archive or packed file holds, for the error about one that is read only unpacked, with the remedy;
+/// empty: it is none.
+std::string packedFileText(const std::string& file);
 /// The ending of a name, in lower case, with its point.
 std::string lowerEnding(const std::string& name);
 

@@ -10,6 +10,7 @@
 #include <cerrno>
 
 #include "tests/support/errors.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -78,6 +79,18 @@ TEST(FolderLock, TakesTheEmptyFileOfAProcessThatCouldNotWriteItsName) {
     EXPECT_THAT(test::readFile(folder / "a.lock"), HasSubstr("lock of emscape, process "));
   }
   EXPECT_THAT(folder.files(), IsEmpty());
+}
+
+/// A lock that could not be written would block its folder once its process is killed.
+TEST(FolderLock, IsNotHeldOnAFullDisk) {
+  const test::TemporaryFolder folder;
+  {
+    const test::FileSizeLimit full(0);
+    EXPECT_THAT(test::errorOf([&] { FolderLock(folder.path(), "a.lock"); }, ErrorCode::other),
+                HasSubstr("a.lock: cannot write: "));
+  }
+  EXPECT_THAT(folder.files(), IsEmpty());
+  EXPECT_NE(FolderLock::tryLock(folder.path(), "a.lock"), nullptr);
 }
 
 INSTANTIATE_TEST_SUITE_P(Causes, LockWithoutFlock, testing::Values(ENOLCK, ENOSYS, EOPNOTSUPP, EIO));

@@ -119,10 +119,10 @@ TEST(FolderLock, AFileOfTheUserWithItsNameIsLeftAsItIs) {
   const test::TemporaryFolder folder;
   for (const std::string text : {"", "of another program"}) {
     folder.write("a.lock", text);
-    EXPECT_EQ(
-        test::errorOf([&] { FolderLock(folder.path(), "a.lock"); }, ErrorCode::other),
-        folder / "a.lock" +
-            ": cannot write: a file of that name exists that is no lock of emscape; use another folder");
+    EXPECT_EQ(test::errorOf([&] { FolderLock(folder.path(), "a.lock"); }, ErrorCode::other),
+              folder / "a.lock" + ": cannot write: a file of that name exists that is no lock of emscape; " +
+                  (text.empty() ? "it is empty: if a killed process has left it, remove it"
+                                : "use another folder"));
     EXPECT_EQ(test::readFile(folder / "a.lock"), text);
   }
 }

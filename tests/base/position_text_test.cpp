@@ -1,5 +1,6 @@
 #include "base/geodesy/position_text.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -83,6 +84,25 @@ TEST(ParsePosition, RefusesOtherTexts) {
               true)
         << text;
   }
+}
+
+/// GPS receivers write the band of MGRS after the zone.
+TEST(ParsePosition, RefusesAZonesSThatMayBeABandOrSouth) {
+  for (const char* const text : {"16S 733000 4043000", "16s 733000 4043000", "16 S 0733000 4043000",
+                                 "733000 4043000 16S", "16S,733000,4043000", "16S 733000 4043000, 150"}) {
+    const std::string message = test::errorOf([&] { parsePosition(text); }, ErrorCode::usage);
+    EXPECT_THAT(message,
+                testing::HasSubstr("may be MGRS's band, 32 to 40 degrees north, or south of the equator"))
+        << text;
+    for (const bool is_north : {true, false}) {  // the remedies
+      const std::size_t begin = message.find('\'', message.find(is_north ? "write '" : " or '16")) + 1;
+      const std::size_t at = is_north ? begin : message.rfind('\'', message.size() - 2) + 1;
+      const ParsedPosition read = parsePosition(message.substr(at, message.find('\'', at) - at));
+      EXPECT_NEAR(read.latitude_deg, is_north ? 36.5 : -53.8, 0.1) << message;
+    }
+  }
+  EXPECT_NEAR(parsePosition("56S 334000 6252000").latitude_deg, -33.86, 0.01) << "no northing of the band";
+  EXPECT_NEAR(parsePosition("16N 733000 404300").latitude_deg, 3.66, 0.01) << "band N is in the north";
 }
 
 TEST(CoordinateText, HasTheDigitsOfTheStep) {

@@ -50,15 +50,6 @@ TEST(UnfinishedFile, IsPublishedWithTheFileBesideIt) {
   }
 }
 
-TEST(UnfinishedFile, HasThePermissionsOfTheFileThatItReplaces) {
-  const test::TemporaryFolder folder;
-  const fs::perms own = fs::perms::owner_read | fs::perms::owner_write;
-  fs::permissions(folder.write("a.csv", "private"), own);
-  writeWhole(folder / "a.csv", [](std::ostream& stream) { stream << "new"; });
-  EXPECT_EQ(fs::status(folder / "a.csv").permissions(), own);
-  EXPECT_EQ(test::readFile(folder / "a.csv"), "new");
-}
-
 TEST(UnfinishedFile, LeavesNothingWhenDescriptorsRunOut) {
   const test::TemporaryFolder folder;
   rlimit limit{};

@@ -11,6 +11,7 @@
 #include "base/files/file_patch.h"
 #include "base/files/file_reading.h"
 #include "base/files/unfinished_file.h"
+#include "base/large_array.h"
 #include "tests/support/errors.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
@@ -40,6 +41,41 @@ TEST_F(WholeFile, AppearsWithItsText) {
   writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "two"; });
   EXPECT_EQ(textOf(folder_ / "a"), "two");
   EXPECT_EQ(filesInFolder(), 1);
+}
+
+/// Large files are left once the work is stopped; the small records of what is finished are not.
+TEST_F(WholeFile, OfManyBytesIsNeitherWrittenNorReadOnceTheWorkIsStopped) {
+  const std::string large(3 * ByteCheckpoints::kBytes / 2, 'x');
+  writeWhole(folder_ / "large", [&](std::ostream& stream) { stream << large; });
+  StopFlag stopped{true};
+  Work work(&stopped);
+  const WorkScope scope(&work);
+  EXPECT_THROW(writeWhole(folder_ / "block", [&](std::ostream& stream) { stream << large; }), Stopped);
+  EXPECT_THROW(writeWhole(folder_ / "pieces",
+                          [&](std::ostream& stream) {
+                            for (std::size_t n = 0; n < large.size(); n += 1000)
+                              stream.write(&large[n], 1000);
+                          }),
+               Stopped);
+  EXPECT_EQ(filesInFolder(), 1);
+  EXPECT_THROW(readWhole(folder_ / "large"), Stopped);
+  EXPECT_THROW(digestOf(folder_ / "large"), Stopped);
+  std::vector<int> memory;
+  EXPECT_THROW(resizeInParts(memory, 10'000'000), Stopped);
+  writeWhole(folder_ / "record", [](std::ostream& stream) { stream << "step 1"; });
+  EXPECT_EQ(textOf(folder_ / "record"), "step 1");
+  EXPECT_EQ(digestOf(folder_ / "record").bytes, 6U);
+}
+
+TEST_F(WholeFile, KeepsWhoMayReadTheFileThatItReplaces) {
+  for (const auto mode : {fs::perms(0600), fs::perms(0640), fs::perms(0444)}) {
+    writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "one"; });
+    fs::permissions(folder_ / "a", mode);
+    writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "two"; });
+    EXPECT_EQ(textOf(folder_ / "a"), "two");
+    EXPECT_EQ(fs::status(folder_ / "a").permissions(), mode);
+    fs::remove(folder_ / "a");
+  }
 }
 
 TEST_F(WholeFile, ATargetIsRefusedBeforeItIsWritten) {

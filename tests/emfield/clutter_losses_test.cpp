@@ -8,6 +8,7 @@
 
 #include "emfield/excess/clutter_text.h"
 #include "emfield/excess/emitter_excess.h"
+#include "emfield/excess/model_check.h"
 #include "emfield/ground/ground_posts.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/emfield/columns/surface.h"
@@ -24,7 +25,9 @@ namespace {
 using namespace emscape::emfield::testing;
 using propagation::PropagationModel;
 using propagation::TerminalClutterModel;
+using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -273,6 +276,28 @@ TEST(SmoothSurface, WarnsOfPointsBelowItAndOfTerrainThatTwoRayIgnores) {
   EXPECT_THAT(budget.warnings, Contains(HasSubstr("is for water and other smooth ground")));
   const PathBudget by_p528 = budgetTo(mastOf(PropagationModel::p528, 10), hill, 45.05, 105);
   EXPECT_THAT(by_p528.warnings, Contains(HasSubstr("below the smooth surface of 'p528'")));
+}
+
+/// What validate, maps and fields tell; a path tells it of its end.
+TEST(SmoothSurface, WarnsOfGroundFarBelowIt) {
+  for (const PropagationModel model : {PropagationModel::two_ray, PropagationModel::p528}) {
+    const auto scenario = mastOf(model, 10);
+    const auto warningsOver = [&](double inland_m) {
+      const MadeTerrain coast(45, 5, 0.2,
+                              [=](double, double north_deg) { return north_deg < 0.11 ? inland_m : 0.0; });
+      return smoothSurfaceWarnings(*scenario, scenario->emitters[0], coast);
+    };
+    EXPECT_THAT(warningsOver(300), ElementsAre(AllOf(HasSubstr("is the ground below the emitter, 300 m"),
+                                                     HasSubstr("the lowest ground is at 0 m"),
+                                                     HasSubstr("'ground: {surface_msl_m: 0}' sets"))));
+    EXPECT_THAT(warningsOver(10), IsEmpty());
+    scenario->ground.surface_msl_m = 0;  // the remedy
+    EXPECT_THAT(warningsOver(300), IsEmpty());
+  }
+  const auto other = mastOf(PropagationModel::diffraction, 10);
+  const MadeTerrain coast(45, 5, 0.2,
+                          [](double, double north_deg) { return north_deg < 0.11 ? 300.0 : 0.0; });
+  EXPECT_THAT(smoothSurfaceWarnings(*other, other->emitters[0], coast), IsEmpty());
 }
 
 }  // namespace

@@ -50,6 +50,17 @@ USUAL = {
     "--crs": ["local", "utm"], "--cell": ["4000"], "--products": ["covered", "value"], "--threshold": ["-90"], "--save-state": ["{o}/a.view.json"],
     "--emitter": ["radar"], "--azimuths": ["0:90:45"], "--range-m": ["9000"], "--to": ["52.05,5.05,100"], "--model": ["free_space"],
 }
+# Of subcommands with few options of their own, global ones are drawn, too.
+GLOBAL = [("--json", ""), ("--threads", "INT"), ("--backend", "TEXT:{auto,cpu}")]
+FEW = 6
+# Keys of the scenarios, to which the odd values are given by --set.
+PATHS = ["region.dims", "region.size_m", "region.origin.latitude_deg", "duration_s", "step_s", "epoch", "name", "terrain",
+         "terrain.files", "platforms.mast.position", "platforms.mast.position.height_agl_m", "emitters.radar.scan", "emitters.radar.antenna",
+         "emitters.radar.antenna.beamwidth_az_deg", "emitters.radar.propagation", "emitters.radar.frequency_hz", "emitters.radar.receiver",
+         "emitters.radar.clutter", "emitters.radar.active_s", "output", "output.quantities", "output.interval", "atmosphere.refractivity",
+         "ground", "bands", "targets", "receivers", "emitters", "emitters.none.power_w", "", "a.b.c.d"]
+ODD = ["{}", "[]", "null", "1e400", "[1, 2, 3]", "[[0, 1]]", "{kind: raster, bars: 1000}", "{kind: mean, seconds: 1e9}", "{a: &a [*a]}",
+       "{file: /dev/zero}", "{kind: soundings, file: {q}}", "{pattern: file, file: {q}}", "parabolic_equation", "[nan]", "'", "\n", "[65535, 65535, 2]"]
 OPTION = re.compile(r"^  +(?:-\w,\s*)?(--[a-z0-9-]+)((?: (?:TEXT|FLOAT|INT|UINT))?(?::\{[^}]*\})?)", re.MULTILINE)
 INSIDE = re.compile(r"std::|terminate called|what\(\)|\.cpp\b|_ZN|pthread|SQLite|basic_string|vector::|bad_alloc|json\.exception|\bassert", re.I)
 TIME_LIMIT_S = 60
@@ -69,6 +80,8 @@ def drawn(option, random_):
     name, kind = option
     if not kind:
         return [name]
+    if name == "--set" and random_.random() < 0.5:
+        return [name, random_.choice(PATHS) + "=" + random_.choice(ODD + VALUES["TEXT"] + VALUES["FLOAT"])]
     if name in USUAL and random_.random() < 0.5:
         return [name, random_.choice(USUAL[name])]
     choices = re.findall(r"[\w.-]+", kind[kind.find("{"):]) if "{" in kind else []
@@ -79,7 +92,7 @@ def faults_of(done, folder):
     errors = [line for line in done.stderr.splitlines() if line.startswith("emscape: error:")]
     if done.returncode not in range(6):
         yield f"status {done.returncode}"
-    if done.returncode in (1, 2, 3, 4) and len(errors) != 1 and "error:" not in done.stdout:
+    if done.returncode in (1, 2, 3, 4) and len(errors) != 1 and not re.search(r"error:|: \"error\"", done.stdout):
         yield f"{len(errors)} messages of an error"
     if (found := INSIDE.search(done.stderr)) is not None:
         yield f"'{found[0]}' in a message"
@@ -99,7 +112,7 @@ def main():
     parser.add_argument("subcommands", nargs="*")
     parser.add_argument("--pairs", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
+    given = parser.parse_intermixed_args()
     failed = 0
     with tempfile.TemporaryDirectory() as work:
         work = Path(work)
@@ -112,6 +125,8 @@ def main():
         for subcommand in given.subcommands or BASE:
             random_ = random.Random(f"{given.seed} {subcommand}")
             options = [option for option in options_of(given.emscape, subcommand) if option[0] not in BASE[subcommand].split()]
+            if len(options) < FEW:
+                options += GLOBAL
             statuses = {}
             for number in range(given.pairs):
                 out = work / f"{subcommand}{number}"

@@ -8,13 +8,16 @@
 #include "emscape/base/geodesy/geoid.h"
 #include "recording/read_recording.h"
 #include "tests/support/errors.h"
+#include "tests/support/stopping.h"
 #include "tests/support/temporary_folder.h"
 
 namespace emscape::interop {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 using testing::SizeIs;
 
 constexpr std::int64_t kSix_ms = 1780293600000;  // 2026-06-01T06:00:00Z
@@ -121,6 +124,14 @@ TEST(TablesOfOthers, RowsWithMoreCellsThanTheHeaderAreBad) {
       << "empty cells at the end";
 }
 
+TEST(TablesOfOthers, AreNotReadToTheirEndOnceTheWorkIsStopped) {
+  const test::TemporaryFolder folder;
+  std::string rows = "time,lat,lon,alt_m\n";
+  for (int n = 0; n < 200000; ++n) rows += fmt::format("{},52,5.{:06d},100\n", n, n);
+  const std::string file = folder.write("a.csv", rows);
+  EXPECT_LT(test::stoppedWithin_ms([&] { readRecording(file); }, 10), 100);
+}
+
 TEST(TablesOfOthers, NamesInOtherEncodingsStayApart) {
   const std::string rows =
       "time,name,lat,lon,alt_m\n0,\xC1\xEE\xF0\xF2,52,5,1\n0,\xCA\xF0\xE0\xED,52.5,5,1\n"
@@ -137,6 +148,51 @@ TEST(TablesOfOthers, NamesInOtherEncodingsStayApart) {
   EXPECT_EQ(readAs("b.gpx", "<?xml version=\"1.0\" encoding=\"iso-8859-1\"?>" + gpx).objects.at(0).name,
             "Áîðò");
   EXPECT_THAT(readAs("c.gpx", gpx).tally.notes, Contains(HasSubstr("taken as Latin-1")));
+}
+
+TEST(TracksOfOthers, InAnotherEncodingThanTheyStateStayApartAndAreTold) {
+  const auto track = [](const std::string& name, const std::string& latitude) {
+    return "<trk><name>" + name + "</name><trkseg><trkpt lat=\"" + latitude +
+           "\" lon=\"5\"><ele>1</ele><time>2026-06-01T06:00:00Z</time></trkpt><trkpt lat=\"" + latitude +
+           "1\" lon=\"5\"><ele>1</ele><time>2026-06-01T06:00:10Z</time></trkpt></trkseg></trk>";
+  };
+  // Two Cyrillic names of four letters in WINDOWS-1251, and letters that look like Latin ones.
+  const auto gpx = [&](const std::string& encoding) {
+    return "<?xml version=\"1.0\" encoding=\"" + encoding + "\"?><gpx version=\"1.1\">" +
+           track("\xC1\xEE\xF0\xF2", "52") + track("\xCA\xF0\xE0\xED", "53") + track("\xC0-1", "54") +
+           track("A-1", "55") + "</gpx>";
+  };
+  for (const char* const stated : {"UTF-8", "us-ascii", "no-such-encoding"}) {
+    const Recording recording = readAs("a.gpx", gpx(stated));
+    EXPECT_THAT(recording.objects, SizeIs(4)) << stated;
+    EXPECT_THAT(recording.tally.notes, Contains(AllOf(HasSubstr(std::string("states the encoding ") + stated),
+                                                      HasSubstr("encoding=\"windows-1251\""))));
+    EXPECT_EQ(recording.objects.at(3).name, "A-1");
+  }
+  const Recording right = readAs("b.gpx", gpx("windows-1251"));  // the remedy
+  EXPECT_EQ(right.objects.at(0).name, "Борт");
+  EXPECT_THAT(right.tally.notes, Not(Contains(HasSubstr("encoding"))));
+}
+
+/// The height that a table states in a column of this name with the value 1000.
+double heightIn(const std::string& column) {
+  const Recording r =
+      readAs("a.csv", "time,lat,lon," + column + "\n0,52,5,1000\n10,52.01,5,1000\n20,52.02,5,1000\n");
+  return r.objects.at(0).poses.at(0).height_msl_m;
+}
+
+TEST(TablesOfOthers, UnitsAreWordsOfTheColumnsNames) {
+  for (const char* const feet : {"Altitude feet", "altitude_feet", "Altitude (feet)", "Altitude in feet",
+                                 "AltitudeFeet", "alt_ft_msl", "Altitude-ft", "Alt ft", "altitude feet amsl"})
+    EXPECT_NEAR(heightIn(feet), 304.8, 1e-9) << feet;
+  for (const char* const metres :
+       {"Altitude metres", "altitude_meters", "AltitudeMeters", "alt m", "height_msl_m", "Elevation in m"})
+    EXPECT_NEAR(heightIn(metres), 1000, 1e-9) << metres;
+  const Recording unknown = readAs("a.csv", "time,lat,lon,Altitude kft\n0,52,5,10\n10,52.01,5,10\n");
+  EXPECT_THAT(unknown.tally.notes, Contains(HasSubstr("not used: column 'Altitude kft'")))
+      << "a unit that is not known is not assumed";
+  const Recording ms = readAs("a.csv", "time ms,lat,lon,alt m\n0,52,5,10\n10000,52.01,5,10\n");
+  EXPECT_NEAR(ms.objects.at(0).poses.at(1).t_s, 10, 1e-9);
 }
 
 TEST(TablesOfOthers, BaseStationHasNoNames) {

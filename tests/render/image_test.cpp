@@ -9,6 +9,7 @@
 
 #include "render/cast/rgba.h"
 #include "tests/support/errors.h"
+#include "tests/support/stopping.h"
 #include "tests/support/temporary_folder.h"
 
 namespace emscape::render {
@@ -51,6 +52,19 @@ TEST(Png, RoundTripIsExact) {
   const Image8 read = readPng(file);
   EXPECT_EQ(read.size, clear.size);
   for (std::size_t i = 0; i < clear.rgba.size(); ++i) EXPECT_NEAR(read.rgba[i], clear.rgba[i], 1);
+}
+
+TEST(Png, IsNotEncodedToItsEndOnceTheWorkIsStopped) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "large.png";
+  Image8 large;
+  large.size = {6000, 4000};
+  large.rgba.resize(static_cast<std::size_t>(large.size.count()) * 4);
+  std::uint32_t random = 1;
+  for (std::uint8_t& byte : large.rgba)
+    byte = static_cast<std::uint8_t>((random = random * 1664525 + 1013904223) >> 24);
+  EXPECT_LT(test::stoppedWithin_ms([&] { writePng(file, large); }, 50), 100);
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST(Png, FailuresNameTheFileAndLeaveNoFile) {

@@ -28,19 +28,20 @@ class Drawn {
 
   std::string scenario() {
     has_terrain_ = isLikely(0.5);
-    const double width_m = has_terrain_ ? uniform(10e3, 29e3) : logUniform(10e3, 300e3);
-    const double voxels = logUniform(2e3, 4e5);
+    const double width_m = has_terrain_ && isLikely(0.7) ? uniform(10e3, 29e3) : logUniform(10e3, 300e3);
+    const bool is_long = isLikely(0.2);
+    const double voxels = logUniform(2e3, is_long ? 2e5 : 4e5);
     const int layers = std::clamp(static_cast<int>(logUniform(2, 60)), 2, 60);
     const int side = std::max(2, static_cast<int>(std::sqrt(voxels / layers)));
     const bool is_interval = isLikely(0.6);
-    steps_ = is_interval ? 1 : 1 + static_cast<int>(below(4));
+    steps_ = is_interval ? 1 : is_long ? 10 + static_cast<int>(below(50)) : 1 + static_cast<int>(below(4));
     std::string text = fmt::format(
         "schema_version: 1\nname: drawn\nduration_s: {}\nstep_s: 1\nregion:\n"
         "  origin: {{latitude_deg: 36.303, longitude_deg: -84.246, height_msl_m: 200}}\n"
         "  size_m: [{:.0f}, {:.0f}, {:.0f}]\n  dims: [{}, {}, {}]\n",
         steps_ - 1, width_m, width_m, uniform(1000, 9000), side, side, layers);
     if (has_terrain_)
-      text += fmt::format("terrain: {{files: [{}], vertical_datum: egm96}}\n",
+      text += fmt::format("terrain: {{files: [{}], vertical_datum: egm96, missing: sea}}\n",
                           test::shippedScenario("data/jacksboro.tif"));
     const int emitters = 1 + static_cast<int>(below(4));
     text += "platforms:\n";
@@ -64,6 +65,7 @@ class Drawn {
       quantities.push_back(interval == "instant" && has_jammer
                                ? one({"detection_probability", "jammer_to_signal_db", "snr_db"})
                                : one({"detection_probability", "snr_db"}));
+      if (isLikely(0.5)) quantities.erase(quantities.begin());  // jammers have no field of their own
     } else if (isLikely(0.3)) {
       quantities.push_back(one({"emitter_count", "dominant_emitter", "field_strength_dbuvm"}));
     }

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 
 #include "scenario/antenna/pattern_file.h"
 #include "scenario/antenna/shapes.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/scenario/antenna_files.h"
+#include "tests/scenario/dem_file.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::scenario {
 namespace {
@@ -164,12 +167,50 @@ std::string nsma(const std::string& header, bool has_elevation = true) {
   return text + "ENDFIL:,EOF\n";
 }
 
+TEST(AntennaFiles, InArchivesAreRefusedWithTheirNames) {
+  const test::TemporaryFolder folder;
+  const std::string text = nsma("GUNITS:,DBI/DBR\nMDGAIN:,15\n");
+  const std::string first = folder.write("a.adf", text), second = folder.write("b.adf", text);
+  test::writeZip(folder / "antennas.zip", {{"a.adf", first}, {"b.adf", second}});
+  for (const char* const name : {"antennas.zip", "antennas.adf", "antennas.csv"}) {
+    if (folder / name != folder / "antennas.zip")
+      std::filesystem::copy_file(folder / "antennas.zip", folder / name);
+    const std::string file = folder / name;
+    expectFault(
+        [&] { readAntenna(file); }, file, 0, 0,
+        "an antenna file is read unpacked: it is an archive (ZIP) of a.adf, b.adf; unpack it (unzip " + file +
+            ") and name one of them");
+  }
+  test::writeGzip(first, folder / "a.adf.gz");
+  expectFault([&] { readAntenna(folder / "a.adf.gz"); }, folder / "a.adf.gz", 0, 0, "gunzip ");
+  EXPECT_NO_THROW(readAntenna(first));  // the remedy
+}
+
+TEST(AntennaFiles, StateTheirFrequencies) {
+  const auto bandOf = [](const char* name, const std::string& text) {
+    const TemporaryFile file(name, text);
+    return readPatternFile(file.path()).stated_band;
+  };
+  const StatedBand nsma_band = bandOf("a.adf", nsma("HGHFRQ:,960.5\n"));
+  EXPECT_EQ(nsma_band.lowest_hz, 880e6);
+  EXPECT_EQ(nsma_band.highest_hz, 960.5e6);
+  EXPECT_EQ(bandOf("a.adf", nsma("")).highest_hz, HUGE_VAL);
+  const std::string cuts =
+      "\nGAIN 12\nHORIZONTAL 4\n0 0\n90 10\n180 20\n270 10\nVERTICAL 4\n0 0\n90 15\n180 20\n270 16\n";
+  for (const char* const one : {"FREQUENCY 900", "FREQUENCY (MHz) 900", "frequency\t900 MHz"}) {
+    EXPECT_EQ(bandOf("a.msi", one + cuts).lowest_hz, 900e6) << one;
+    EXPECT_EQ(bandOf("a.msi", one + cuts).highest_hz, 900e6) << one;
+  }
+  EXPECT_EQ(bandOf("a.msi", "FREQUENCY 880-960" + cuts).highest_hz, 960e6);
+  EXPECT_EQ(bandOf("a.msi", "FREQUENCY dual band" + cuts).lowest_hz, 0);
+}
+
 TEST(NsmaAntenna, HasGainCutsAndTilt) {
   const TemporaryFile file("a.adf", nsma("GUNITS:,DBD/DBR\nMDGAIN:,15.35\nAZWIDT:,65\nELTILT:,4\n"));
   const PatternFile pattern = readPatternFile(file.path());
   EXPECT_THAT(pattern.warnings, IsEmpty());
   EXPECT_THAT(pattern.notes, ElementsAre("azimuth: cut H V/V", "elevation: cut V V/V",
-                                         "ignored: 2 lines and cuts (LOWFRQ, cut H V/H)"));
+                                         "ignored: 1 lines and cuts (cut H V/H)"));
   EXPECT_NEAR(*pattern.gain_dbi, 17.5, 1e-9);
   const AntennaPtr antenna = readAntenna(file.path());
   EXPECT_EQ(antenna->description.substr(0, 10), "Acme P-900");

@@ -69,6 +69,28 @@ TEST(LikelyMistakes, GainsWidthsAndStepsThatAreHardlyMeantAreTold) {
               HasSubstr("'step_s' of 100 s is longer than 'duration_s', 60 s: there is one step"));
 }
 
+TEST(LikelyMistakes, FrequenciesOutsideThoseOfAnAntennasFileAreTold) {
+  const test::TemporaryFolder folder;
+  const std::string cuts =
+      "\nGAIN 12 dBi\nHORIZONTAL 4\n0 0\n90 10\n180 20\n270 10\nVERTICAL 4\n0 0\n90 15\n180 20\n270 16\n";
+  const auto at = [&](const std::string& frequency_hz, const std::string& stated) {
+    const std::string file = folder.write("a.msi", stated + cuts);
+    const std::vector<Edit> edits{{"emitters.transmitter.antenna", "{pattern: file, file: " + file + "}"},
+                                  {"emitters.transmitter.frequency_hz", frequency_hz}};
+    const ParseResult once = parseScenario(test::shippedScenario("quick.yaml"), edits);
+    std::string all;
+    for (const Problem& problem : once.problems) all += problem.message + "\n";
+    return all;
+  };
+  EXPECT_THAT(at("450e6", "FREQUENCY 880-960"),
+              HasSubstr("emitter 'transmitter' transmits at 450 MHz, but the file of its antenna is for 880 "
+                        "MHz to 960 MHz: gain and pattern may be others"));
+  EXPECT_THAT(at("900e6", "FREQUENCY 880-960"), Not(HasSubstr("the file of its antenna")));
+  EXPECT_THAT(at("1e9", "FREQUENCY 900"), Not(HasSubstr("the file of its antenna"))) << "around it";
+  EXPECT_THAT(at("1.3e9", "FREQUENCY 900"), HasSubstr("is for 900 MHz: "));
+  EXPECT_THAT(at("1.3e9", ""), Not(HasSubstr("the file of its antenna")));
+}
+
 TEST(LikelyMistakes, AreNotToldOfShippedScenarios) {
   for (const char* name : {"quick.yaml", "jacksboro.yaml", "links.yaml", "clutter.yaml", "jamming.yaml",
                            "ship_duct.yaml", "interval.yaml", "sinr.yaml"}) {

@@ -10,6 +10,7 @@
 #include "scenario/antenna/pattern.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/scan/swept_antenna.h"
+#include "tests/support/stopping.h"
 
 namespace emscape::scenario {
 namespace {
@@ -46,6 +47,15 @@ ScanSweep partOf(const ScanSweep& sweep, std::size_t begin, std::size_t end) {
   part.arcs.assign(sweep.arcs.begin() + static_cast<std::ptrdiff_t>(begin),
                    sweep.arcs.begin() + static_cast<std::ptrdiff_t>(std::min(end, sweep.arcs.size())));
   return part;
+}
+
+/// As a raster of a thousand bars has them: one elevation of the table takes a tenth of a second.
+TEST(SweptAntenna, OfManyTiltsIsStoppedWithinAnElevation) {
+  const AntennaPtr antenna = makeGaussian(30, 0.5, 0.5, -30);
+  ScanSweep sweep;
+  for (int n = 0; n < 1000; ++n) sweep.arcs.push_back({-45, 90, 0.05 * n - 25, 1e-3, 1});
+  for (const SweptPattern pattern : {SweptPattern::mean, SweptPattern::largest})
+    EXPECT_LT(emscape::test::stoppedWithin_ms([&] { sweptAntenna(*antenna, sweep, pattern); }, 30), 300);
 }
 
 TEST(SweptAntenna, OfManyArcsEqualsThatOfItsParts) {

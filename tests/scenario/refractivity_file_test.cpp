@@ -292,6 +292,19 @@ TEST_F(Soundings, AreReadFromArchivesAsTheyAreDownloaded) {
   }
 }
 
+TEST_F(Soundings, OfWhichAnArchiveHasSeveralAreRefusedWithTheirNames) {
+  const std::string first = folder_.write("a.txt", kChanhassen), second = folder_.write("b.txt", kList);
+  test::writeZip(folder_ / "two.zip", {{"a.txt", first}, {"b.txt", second}});
+  const std::string archive = folder_ / "two.zip";
+  for (const bool is_sounding : {true, false}) {
+    EXPECT_THAT(test::errorOf([&] { is_sounding ? readSounding(archive, {}) : readRefractivity(archive); },
+                              ErrorCode::bad_input),
+                testing::AllOf(HasSubstr("two.zip: "), HasSubstr("it is an archive (ZIP) of a.txt, b.txt; "),
+                               HasSubstr("unpack it (unzip " + archive + ") and name one of them")));
+  }
+  EXPECT_NO_THROW(readSounding(first, {}));  // the remedy
+}
+
 TEST_F(Soundings, WhoseColumnsContradictEachOtherAreRefused) {
   std::string text = kList;
   for (const auto& [from, to] : {std::pair("25.0   20.0", "20.0   25.0"), {" 18.0    4.0", "  4.0   18.0"}})

@@ -160,6 +160,29 @@ TEST(CandidateSites, HeightsAreThoseOfAColumnThatStatesItsReference) {
   EXPECT_EQ(sites[0].height->height_m, 120.5);
 }
 
+TEST(CandidateSites, HeightsThatContradictEachOtherAreRefused) {
+  const test::TemporaryFolder folder;
+  const auto table = [&](const std::string& rows) {
+    return folder.write("a.csv", "name,lat,lon,height_msl_m,height_ellipsoid_m\n" + rows);
+  };
+  // The geoid is about 43 m above the ellipsoid there.
+  std::vector<CandidateSite> sites;
+  const std::string warnings =
+      warningsOf([&] { sites = readCandidates(table("hill,52,5,60,103\nflat,52,5.1,20,\n")); });
+  EXPECT_EQ(sites.at(0).height->height_m, 60);
+  EXPECT_THAT(warnings, HasSubstr("not used: column 'height_ellipsoid_m'"));
+  EXPECT_THAT(
+      test::errorOf([&] { readCandidates(table("hill,52,5,60,103\nflat,52,5.1,20,20\n")); }),
+      HasSubstr("a.csv:3:16: height_msl_m is 20 and height_ellipsoid_m 20; mean sea level is 43 m above "
+                "the ellipsoid there"));
+  const std::string geojson = folder.write(
+      "a.geojson", R"({"type": "Feature", "properties": {"height_msl_m": 120, "height_ellipsoid_m": 120},
+"geometry": {"type": "Point", "coordinates": [5, 52]}})");
+  EXPECT_THAT(
+      test::errorOf([&] { readCandidates(geojson); }),
+      HasSubstr("a.geojson: point 1 contradicts itself: height_msl_m is 120 and height_ellipsoid_m 120"));
+}
+
 /// A file of one vector format with a point named hill at 52.5 N 5.25 W; in a .zip if its name says so.
 std::string pointFile(const test::TemporaryFolder& folder, const char* driver, const std::string& name) {
   gdal::prepare();

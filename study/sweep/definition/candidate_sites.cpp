@@ -31,12 +31,14 @@ std::string numberedName(const std::vector<CandidateSite>& sites) {
   return fmt::format("site {}", sites.size() + 1);
 }
 
-/// The field of heights of a layer; -1: none.
-int heightFieldOf(OGRFeatureDefnH layer) {
+/// A layer's fields of heights: the first is used, the others are compared with it.
+std::vector<int> heightFieldsOf(OGRFeatureDefnH layer) {
+  std::vector<int> fields;
   for (int field = 0; field < OGR_FD_GetFieldCount(layer); ++field) {
-    if (scenario::heightReferenceOf(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(layer, field)))) return field;
+    if (scenario::heightReferenceOf(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(layer, field))))
+      fields.push_back(field);
   }
-  return -1;
+  return fields;
 }
 
 /// @param has_third  becomes true if a point has a third coordinate that is not used
@@ -51,7 +53,8 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
   }
   const OGRFeatureDefnH definition = OGR_L_GetLayerDefn(layer);
   const int name_field = OGR_FD_GetFieldIndex(definition, "name");
-  const int height_field = heightFieldOf(definition), ele_field = OGR_FD_GetFieldIndex(definition, "ele");
+  const int ele_field = OGR_FD_GetFieldIndex(definition, "ele");
+  const std::vector<int> height_fields = heightFieldsOf(definition);
   points.eachFeature(layer, [&](OGRFeatureH feature) {
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
     const OGRwkbGeometryType type =
@@ -78,12 +81,23 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
     std::string name = name_field < 0 ? "" : OGR_F_GetFieldAsString(feature, name_field);
     if (name.empty()) name = numberedName(sites);
     CandidateSite site{std::move(name), y, wrapLongitude_deg(x), {}};
-    if (height_field >= 0 && OGR_F_IsFieldSetAndNotNull(feature, height_field) != 0) {
+    for (const int height_field : height_fields) {
+      if (OGR_F_IsFieldSetAndNotNull(feature, height_field) == 0) continue;
       const char* const field = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(definition, height_field));
       const std::string text = OGR_F_GetFieldAsString(feature, height_field);
       const std::optional<double> height_m = document::numberOrCommaIn(text);
-      if (!height_m && !text.empty()) fail(fmt::format("has {} '{}', not a number of metres", field, text));
-      if (height_m) site.height = {*scenario::heightReferenceOf(field), *height_m};
+      const bool is_used = height_field == height_fields.front();
+      if (!height_m && !text.empty() && is_used)
+        fail(fmt::format("has {} '{}', not a number of metres", field, text));
+      if (!height_m) continue;
+      const scenario::PointHeight height{*scenario::heightReferenceOf(field), *height_m};
+      if (is_used) {
+        site.height = height;
+      } else if (site.height) {
+        const std::string contradiction =
+            scenario::contradictionOfHeights(y, site.longitude_deg, *site.height, height);
+        if (!contradiction.empty()) fail("contradicts itself: " + contradiction);
+      }
     }
     has_third = has_third || OGR_G_GetZ(geometry, 0) != 0 ||
                 (ele_field >= 0 && OGR_F_IsFieldSetAndNotNull(feature, ele_field) != 0);

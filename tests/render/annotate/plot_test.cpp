@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "tests/support/stopping.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::render {
 namespace {
@@ -17,6 +21,18 @@ TEST(Plot, TextsAreMadeToFit) {
   const double smaller_px = fittedSize_px(canvas, text, 20, 0.6 * width, Weight::bold);
   EXPECT_NEAR(smaller_px, 12, 0.1);
   EXPECT_LE(canvas.textBox(text, smaller_px, Weight::bold).width, 0.62 * width);
+}
+
+TEST(Plot, IsStoppedBetweenItsParts) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "plot.png";
+  const auto draw = [&] {
+    drawPlot({4000, 3000}, file, [](Canvas& canvas) {
+      for (int n = 0; n < 2000; ++n) canvas.rectangle({0, 0, 4000, 3000}, kPlotGrid);
+    });
+  };
+  EXPECT_LT(test::stoppedWithin_ms(draw, 100), 100);
+  EXPECT_FALSE(std::filesystem::exists(file));
 }
 
 TEST(Plot, TextsAreShortenedByWholeCharacters) {
