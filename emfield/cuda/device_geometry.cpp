@@ -48,6 +48,7 @@ DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots) : setup_(setu
     excess_grid_.ground_msl_m = positions.ground_msl_m.data();
   } else {
     copyColumns();
+    if (setup.terrain != nullptr) highest_post_m_ = highestPost_m(setup.terrain->view());
   }
   excess_grid_.columns = columns_.columns;
 }
@@ -277,7 +278,10 @@ void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t st
   int most_ranges = 0;
   for (const Work& work : works) {
     if (!work.has_shadow) continue;
-    shadows.push_back({{work.task.station, work.ground}, nullptr, work.task.shadow_edge_m, work.task.counts});
+    shadows.push_back({{work.task.station, work.ground, nullptr, highest_post_m_},
+                       nullptr,
+                       work.task.shadow_edge_m,
+                       work.task.counts});
     all_ranges += work.ranges_m.size();
     most_ranges = std::max(most_ranges, work.ground.range_count);
   }
@@ -288,17 +292,17 @@ void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t st
     terms += shadow.task.ground.range_count;
   }
   findShadowEdges(shadows_.send(shadows, stream), static_cast<int>(shadows.size()), most_ranges, excess_grid_,
-                  stream);
+                  columns_.row, stream);
 }
 
 void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& requests,
                                       const std::vector<Work>& works, cudaStream_t stream) {
-  std::vector<DiffractionTask> tasks;
+  std::vector<DeviceDiffractionTask> tasks;
   for (std::size_t r = 0; r < works.size(); ++r) {
     const Work& work = works[r];
     if (work.is_equation ? setup_.terrain == nullptr : !work.model) continue;
     // Of models that read the diffraction beside their own excess it is without air and refraction.
-    DiffractionTask task{{}, AirLoss{}, work.task.station, work.ground, work.excess};
+    DiffractionTask task{{}, AirLoss{}, work.task.station, work.ground, work.excess.out};
     task.station.refraction.exponential = false;
     if (work.is_equation) {
       task.model = besideEquation(requests[r], work);
@@ -310,14 +314,15 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
               work.model->air,
               work.task.station,
               work.ground,
-              work.excess,
+              work.excess.out,
               work.model->terminal};
       task.ground.is_raised = work.model->is_raised && work.ground.terrain.hasCover();
       task.at_crossings = true;
+      if (!task.ground.is_raised) task.highest_msl_m = highest_post_m_;
     } else {
       continue;
     }
-    tasks.push_back(task);
+    tasks.push_back({task, work.excess.counts});
   }
   if (tasks.empty()) return;
   fillDiffraction(diffraction_.send(tasks, stream), static_cast<int>(tasks.size()), excess_grid_,
