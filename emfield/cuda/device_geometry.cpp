@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "base/cuda/staged_copy.h"
@@ -144,19 +145,41 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   GeometryCounts* counts = counts_.atLeast(works.size());
   check(cudaMemsetAsync(counts, 0, works.size() * sizeof(GeometryCounts), stream), "cudaMemsetAsync");
   std::vector<LocateTask> tasks;
-  std::vector<float> tables;
   for (Work& work : works) {
     work.ground.ranges_m = ranges_m;
     if (work.clutter) work.clutter->ground.ranges_m = ranges_m;
     work.task.counts = work.excess.counts = counts++;
     tasks.push_back(work.task);
-    if (work.is_equation || !work.model) continue;
-    for (const auto& table : {work.model->model_tables, work.model->air_tables}) {
-      tables.insert(tables.end(), table->begin(), table->end());
-    }
   }
   tasks_.send(tasks, stream);
-  const float* table = model_tables_.send(tables, stream);
+}
+
+/// Copies the models' tables, one after another, through pinned memory: for a hundred emitters they are
+/// megabytes.
+void DeviceGeometry::placeTables(std::vector<Work>& works, cudaStream_t stream) {
+  struct Piece {
+    const char* from;
+    std::size_t begin, end;  // bytes of the copy
+  };
+  std::vector<Piece> pieces;
+  std::size_t bytes = 0;
+  for (const Work& work : works) {
+    if (work.is_equation || !work.model) continue;
+    for (const auto& table : {work.model->model_tables, work.model->air_tables}) {
+      const std::size_t end = bytes + table->size() * sizeof(float);
+      pieces.push_back({reinterpret_cast<const char*>(table->data()), bytes, end});
+      bytes = end;
+    }
+  }
+  model_tables_.atLeast(bytes / sizeof(float));
+  const auto fill = [&](char* to, std::size_t begin, std::size_t end) {
+    for (const Piece& piece : pieces) {
+      const std::size_t first = std::max(begin, piece.begin), last = std::min(end, piece.end);
+      if (first < last) std::memcpy(to + (first - begin), piece.from + (first - piece.begin), last - first);
+    }
+  };
+  uploadStaged(model_tables_.data(), bytes, fill, stream);
+  const float* table = model_tables_.data();
   for (Work& work : works) {
     if (work.is_equation || !work.model) continue;
     const float* const air = table + work.model->model_tables->size();
@@ -260,6 +283,7 @@ void DeviceGeometry::computeUnmarched(const std::vector<GeometryRequest>& reques
   clock.end(&StageTimes::columns_ms, stream);
   placed_.record(stream);
   clock.begin(stream);
+  placeTables(works, stream);
   findShadows(works, stream);
   fillDiffractions(requests, works, stream);
   for (const Work& work : works) {

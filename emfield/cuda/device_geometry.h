@@ -70,6 +70,7 @@ class DeviceGeometry {
   /// Milliseconds of the host.
   void planEquation(const GeometryRequest& request, Work& work) const;
   void place(std::vector<Work>& works, cudaStream_t stream);
+  void placeTables(std::vector<Work>& works, cudaStream_t stream);
   void computeUnmarched(const std::vector<GeometryRequest>& requests, std::vector<Work>& works,
                         cudaStream_t stream, StageClock& clock);
   void findShadows(const std::vector<Work>& works, cudaStream_t stream);
