@@ -8,7 +8,7 @@ namespace emscape::emfield::cuda {
 namespace {
 
 // Fewer registers, for more threads at a time, take more time.
-template <int kReceivers, bool kOnePass>
+template <int kReceivers>
 __global__ void __launch_bounds__(kColumnThreads, 4)
     diffractionKernel(const DeviceDiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
                       const __grid_constant__ Tiles tiles) {
@@ -22,7 +22,7 @@ __global__ void __launch_bounds__(kColumnThreads, 4)
       task.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + column, k < lowest ? 0 : NAN);
     if (is_unknown) return markUnknown(to, c);
     for (int segment = 0; segment < grid.segments; ++segment) {
-      if (!emfield::fillDiffraction<kReceivers, kOnePass>(task, grid, c, segment)) markUnknown(to, c);
+      if (!emfield::fillDiffraction<kReceivers>(task, grid, c, segment)) markUnknown(to, c);
     }
   });
 }
@@ -36,11 +36,9 @@ void fillDiffraction(const DeviceDiffractionTask* tasks, int count, const Excess
     kernel<<<static_cast<unsigned>(tiles.count()), kColumnThreads, 0, stream>>>(tasks, grid, tiles);
   };
   if (grid.layers == 1) {
-    launch(diffractionKernel<1, true>);
-  } else if (grid.layers <= 16 && grid.every_height) {
-    launch(diffractionKernel<4, true>);
+    launch(diffractionKernel<1>);
   } else {
-    launch(diffractionKernel<8, false>);
+    launch(diffractionKernel<8>);
   }
   emscape::cuda::checkLaunch("diffraction");
 }

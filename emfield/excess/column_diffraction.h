@@ -368,12 +368,12 @@ class Receivers {
 }  // namespace diffraction_detail
 
 /// Fills the voxels of a segment of a column.
-/// @tparam kReceivers  at a time
-/// @tparam kOnePass    without a pass for all receivers
+/// @tparam kReceivers  at a time; 1: without a pass for all receivers
 /// @return false if terrain is missing along the path
-template <int kReceivers, bool kOnePass>
+template <int kReceivers>
 EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& grid, int c, int segment) {
   using diffraction_detail::Receivers;
+  constexpr bool kOnePass = kReceivers == 1;
   const auto column_index = static_cast<std::size_t>(c);
   const auto set = [&](int k, float excess_db) {
     task.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + column_index, excess_db);

@@ -70,7 +70,7 @@ std::vector<float> lossesOfTheCpu(const SeenField& setup, const EmitterExcess& e
                 {{nullptr, loss_db.data()}, nullptr, nullptr, edge_m.data()});
   return loss_db;
 }
-template <int kReceivers, bool kOnePass>
+template <int kReceivers>
 std::vector<float> lossesOfTheDevice(const SeenField& setup, const EmitterExcess& excess,
                                      float highest_msl_m) {
   std::vector<float> loss_db(setup.columns.count() * setup.columns.t_m.size());
@@ -79,7 +79,7 @@ std::vector<float> lossesOfTheDevice(const SeenField& setup, const EmitterExcess
       {{nullptr, loss_db.data()}, nullptr, nullptr, nullptr}, excess.terminal, true,          highest_msl_m};
   for (int c = 0; c < static_cast<int>(setup.columns.count()); ++c) {
     for (int segment = 0; segment < setup.grid.segments; ++segment)
-      fillDiffraction<kReceivers, kOnePass>(task, setup.grid, c, segment);
+      fillDiffraction<kReceivers>(task, setup.grid, c, segment);
   }
   return loss_db;
 }
@@ -111,8 +111,8 @@ TEST(ColumnDiffraction, OfTheDeviceIsThatOfTheCpu) {
       const SeenField setup(propagation::PropagationModel::diffraction, 50e3, height_agl_m, frequency_hz);
       const EmitterExcess excess = planned(setup);
       const std::vector<float> cpu = lossesOfTheCpu(setup, excess);
-      expectSameLosses(setup, lossesOfTheDevice<8, false>(setup, excess, HUGE_VALF), cpu);
-      expectSameLosses(setup, lossesOfTheDevice<4, true>(setup, excess, HUGE_VALF), cpu);
+      expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), cpu);
+      expectSameLosses(setup, lossesOfTheDevice<1>(setup, excess, HUGE_VALF), cpu);
     }
   }
 }
@@ -120,16 +120,15 @@ TEST(ColumnDiffraction, OfTheDeviceIsThatOfTheCpu) {
 TEST(ColumnDiffraction, OfLeaningColumnsIsThatOfTheCpu) {
   const SeenField setup(propagation::PropagationModel::diffraction, 50e3, 15, 1e9, false, FrameKind::enu);
   const EmitterExcess excess = planned(setup);
-  expectSameLosses(setup, lossesOfTheDevice<8, false>(setup, excess, HUGE_VALF),
-                   lossesOfTheCpu(setup, excess));
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess));
 }
 
 TEST(ColumnDiffraction, PostsBelowEveryLineOfSightAreOfNoAccount) {
   for (const double height_agl_m : {900.0, 1500.0, 4000.0}) {
     const SeenField setup(propagation::PropagationModel::diffraction, 50e3, height_agl_m, 1e9);
     const EmitterExcess excess = planned(setup);
-    EXPECT_EQ((lossesOfTheDevice<8, false>(setup, excess, setup.highest_m())),
-              (lossesOfTheDevice<8, false>(setup, excess, HUGE_VALF)));
+    EXPECT_EQ((lossesOfTheDevice<8>(setup, excess, setup.highest_m())),
+              (lossesOfTheDevice<8>(setup, excess, HUGE_VALF)));
   }
 }
 
@@ -151,15 +150,13 @@ TEST(ColumnDiffraction, OfMoreCandidatesThanThereIsRoomForIsTheSame) {
     too_many += !candidates.areComplete();
   }
   EXPECT_GT(too_many, 0);
-  expectSameLosses(setup, lossesOfTheDevice<8, false>(setup, excess, HUGE_VALF),
-                   lossesOfTheCpu(setup, excess), 10);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess), 10);
 }
 
 TEST(ColumnDiffraction, IsUnknownAcrossAHole) {
   const SeenField setup(propagation::PropagationModel::diffraction, 80e3, 15, 1e9, true);
   const EmitterExcess excess = planned(setup);
-  expectSameLosses(setup, lossesOfTheDevice<8, false>(setup, excess, HUGE_VALF),
-                   lossesOfTheCpu(setup, excess), 10);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess), 10);
 }
 
 TEST(HighestPost, IsThatOfTheWholeRasterAndInfiniteWithVoids) {
