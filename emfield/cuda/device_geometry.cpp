@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "base/cuda/staged_copy.h"
@@ -48,6 +49,7 @@ DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots) : setup_(setu
     excess_grid_.ground_msl_m = positions.ground_msl_m.data();
   } else {
     copyColumns();
+    if (setup.terrain != nullptr) highest_post_m_ = highestPost_m(setup.terrain->view());
   }
   excess_grid_.columns = columns_.columns;
 }
@@ -143,19 +145,41 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   GeometryCounts* counts = counts_.atLeast(works.size());
   check(cudaMemsetAsync(counts, 0, works.size() * sizeof(GeometryCounts), stream), "cudaMemsetAsync");
   std::vector<LocateTask> tasks;
-  std::vector<float> tables;
   for (Work& work : works) {
     work.ground.ranges_m = ranges_m;
     if (work.clutter) work.clutter->ground.ranges_m = ranges_m;
     work.task.counts = work.excess.counts = counts++;
     tasks.push_back(work.task);
-    if (work.is_equation || !work.model) continue;
-    for (const auto& table : {work.model->model_tables, work.model->air_tables}) {
-      tables.insert(tables.end(), table->begin(), table->end());
-    }
   }
   tasks_.send(tasks, stream);
-  const float* table = model_tables_.send(tables, stream);
+}
+
+/// Copies the models' tables, one after another, through pinned memory: for a hundred emitters they are
+/// megabytes.
+void DeviceGeometry::placeTables(std::vector<Work>& works, cudaStream_t stream) {
+  struct Piece {
+    const char* from;
+    std::size_t begin, end;  // bytes of the copy
+  };
+  std::vector<Piece> pieces;
+  std::size_t bytes = 0;
+  for (const Work& work : works) {
+    if (work.is_equation || !work.model) continue;
+    for (const auto& table : {work.model->model_tables, work.model->air_tables}) {
+      const std::size_t end = bytes + table->size() * sizeof(float);
+      pieces.push_back({reinterpret_cast<const char*>(table->data()), bytes, end});
+      bytes = end;
+    }
+  }
+  model_tables_.atLeast(bytes / sizeof(float));
+  const auto fill = [&](char* to, std::size_t begin, std::size_t end) {
+    for (const Piece& piece : pieces) {
+      const std::size_t first = std::max(begin, piece.begin), last = std::min(end, piece.end);
+      if (first < last) std::memcpy(to + (first - begin), piece.from + (first - piece.begin), last - first);
+    }
+  };
+  uploadStaged(model_tables_.data(), bytes, fill, stream);
+  const float* table = model_tables_.data();
   for (Work& work : works) {
     if (work.is_equation || !work.model) continue;
     const float* const air = table + work.model->model_tables->size();
@@ -259,6 +283,7 @@ void DeviceGeometry::computeUnmarched(const std::vector<GeometryRequest>& reques
   clock.end(&StageTimes::columns_ms, stream);
   placed_.record(stream);
   clock.begin(stream);
+  placeTables(works, stream);
   findShadows(works, stream);
   fillDiffractions(requests, works, stream);
   for (const Work& work : works) {
@@ -277,7 +302,10 @@ void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t st
   int most_ranges = 0;
   for (const Work& work : works) {
     if (!work.has_shadow) continue;
-    shadows.push_back({{work.task.station, work.ground}, nullptr, work.task.shadow_edge_m, work.task.counts});
+    shadows.push_back({{work.task.station, work.ground, nullptr, highest_post_m_},
+                       nullptr,
+                       work.task.shadow_edge_m,
+                       work.task.counts});
     all_ranges += work.ranges_m.size();
     most_ranges = std::max(most_ranges, work.ground.range_count);
   }
@@ -288,17 +316,17 @@ void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t st
     terms += shadow.task.ground.range_count;
   }
   findShadowEdges(shadows_.send(shadows, stream), static_cast<int>(shadows.size()), most_ranges, excess_grid_,
-                  stream);
+                  columns_.row, stream);
 }
 
 void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& requests,
                                       const std::vector<Work>& works, cudaStream_t stream) {
-  std::vector<DiffractionTask> tasks;
+  std::vector<DeviceDiffractionTask> tasks;
   for (std::size_t r = 0; r < works.size(); ++r) {
     const Work& work = works[r];
     if (work.is_equation ? setup_.terrain == nullptr : !work.model) continue;
     // Of models that read the diffraction beside their own excess it is without air and refraction.
-    DiffractionTask task{{}, AirLoss{}, work.task.station, work.ground, work.excess};
+    DiffractionTask task{{}, AirLoss{}, work.task.station, work.ground, work.excess.out};
     task.station.refraction.exponential = false;
     if (work.is_equation) {
       task.model = besideEquation(requests[r], work);
@@ -310,14 +338,15 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
               work.model->air,
               work.task.station,
               work.ground,
-              work.excess,
+              work.excess.out,
               work.model->terminal};
       task.ground.is_raised = work.model->is_raised && work.ground.terrain.hasCover();
       task.at_crossings = true;
+      if (!task.ground.is_raised) task.highest_msl_m = highest_post_m_;
     } else {
       continue;
     }
-    tasks.push_back(task);
+    tasks.push_back({task, work.excess.counts});
   }
   if (tasks.empty()) return;
   fillDiffraction(diffraction_.send(tasks, stream), static_cast<int>(tasks.size()), excess_grid_,

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/cuda/cuda_memory.h"
 #include "emfield/cuda/device_terrain.h"
+#include "emfield/cuda/diffraction_kernels.h"
 #include "emfield/cuda/excess_kernels.h"
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/cuda/stage_clock.h"
@@ -68,6 +70,7 @@ class DeviceGeometry {
   /// Milliseconds of the host.
   void planEquation(const GeometryRequest& request, Work& work) const;
   void place(std::vector<Work>& works, cudaStream_t stream);
+  void placeTables(std::vector<Work>& works, cudaStream_t stream);
   void computeUnmarched(const std::vector<GeometryRequest>& requests, std::vector<Work>& works,
                         cudaStream_t stream, StageClock& clock);
   void findShadows(const std::vector<Work>& works, cudaStream_t stream);
@@ -81,6 +84,7 @@ class DeviceGeometry {
 
   const FieldSetup& setup_;
   std::shared_ptr<const DeviceTerrain> terrain_;  ///< null: none
+  float highest_post_m_ = HUGE_VALF;              ///< see highestPost_m(); not of maps
   // Copies of columns that are on the host:
   emscape::cuda::Buffer<GridColumn> grid_columns_;  ///< or, of a surface:
   emscape::cuda::Buffer<PositionColumn> position_columns_;
@@ -112,7 +116,7 @@ class DeviceGeometry {
   emscape::cuda::Buffer<float> model_tables_;
   emscape::cuda::Buffer<DeviceShadowTask> shadows_;
   emscape::cuda::Buffer<RangeTerms<float>> terms_;
-  emscape::cuda::Buffer<DiffractionTask> diffraction_;
+  emscape::cuda::Buffer<DeviceDiffractionTask> diffraction_;
   emscape::cuda::Buffer<double> scratch_;
   emscape::cuda::Buffer<GeometryCounts> counts_;
   emscape::cuda::Buffer<std::uint8_t> unknown_;

@@ -5,7 +5,6 @@
 
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/excess/fill_excess.h"
-#include "propagation/diffraction/diffraction.h"
 
 namespace emscape::emfield::cuda {
 
@@ -22,22 +21,6 @@ struct ScratchMemory {
   void* data = nullptr;
   std::size_t bytes = 0;
 };
-
-/// `diffraction` of one emitter. Pointers are to device memory.
-struct DiffractionTask {
-  DiffractionExcess model;
-  AirLoss air;
-  Station station;
-  GroundPosts ground;
-  ExcessOutputs to;
-  propagation::TerminalClutter terminal = {};
-  bool at_crossings = false;  ///< see chord_crossings.h; false: regular posts
-};
-/// Several emitters at once: one thread per column, which stores no posts.
-/// @param grid   in device memory; layers that do not count get no excess
-/// @param row    columns along x
-void fillDiffraction(const DiffractionTask* tasks, int count, const ExcessGrid& grid, int row,
-                     cudaStream_t stream);
 
 /// `parabolic_equation` of one emitter. Pointers are to device memory.
 struct EquationTask {

@@ -1,5 +1,6 @@
 #include "base/cuda/cuda_memory.h"
 #include "emfield/columns/column_geometry.h"
+#include "emfield/cuda/column_tiles.h"
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/geometry/clutter_map.h"
 #include "emfield/solver/field_engine.h"
@@ -38,23 +39,27 @@ __global__ void termsKernel(const DeviceShadowTask* tasks) {
 }
 
 /// One thread per column.
-__global__ void __launch_bounds__(kThreads)
-    edgesKernel(const DeviceShadowTask* tasks, const __grid_constant__ ExcessGrid grid) {
-  const auto c = static_cast<std::size_t>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (c >= grid.column_count || grid.isLeftOut(c)) return;
-  const DeviceShadowTask& shadow = tasks[blockIdx.y];
-  const ShadowTask& task = shadow.task;
-  const HorizonGeometry<float> geometry = task.geometry();
-  const auto slopeTo = [&](const FastInverse& path, int count) {
-    propagation::GrazingSlope<float> slope;
-    visitPosts(task.station, task.ground, path, count, [&](int i, float height_msl_m) {
-      if (i > 0) slope.add(height_msl_m, geometry.slopeTo(height_msl_m, shadow.terms[i]));
-    });
-    return slope.value();
-  };
-  const float edge_m = task.edge_m(grid, c, slopeTo);
-  shadow.shadow_edge_m[c] = edge_m;
-  if (isnan(edge_m)) atomicAdd(&shadow.counts->unknown_columns, 1);
+__global__ void __launch_bounds__(kColumnThreads)
+    edgesKernel(const DeviceShadowTask* tasks, const __grid_constant__ ExcessGrid grid,
+                const __grid_constant__ Tiles tiles) {
+  tiles.eachColumn(grid, [&](int number, int column, int) {
+    const auto c = static_cast<std::size_t>(column);
+    if (grid.isLeftOut(c)) return;
+    const DeviceShadowTask& shadow = tasks[number];
+    const ShadowTask& task = shadow.task;
+    const HorizonGeometry<float> geometry = task.geometry();
+    const auto slopeTo = [&](const FastInverse& path, int count) {
+      propagation::GrazingSlope<float> slope;
+      const auto add = [&](int i, float height_msl_m) {
+        slope.add(height_msl_m, geometry.slopeTo(height_msl_m, shadow.terms[i]));
+      };
+      visitPosts(task.station, task.ground, path, count, add, task.firstPost(grid, c, path, count));
+      return slope.value();
+    };
+    const float edge_m = task.edge_m(grid, c, slopeTo);
+    shadow.shadow_edge_m[c] = edge_m;
+    if (isnan(edge_m)) atomicAdd(&shadow.counts->unknown_columns, 1);
+  });
 }
 
 __global__ void unknownKernel(const float* shadow_edge_m, int columns, std::uint8_t* unknown) {
@@ -89,13 +94,13 @@ void locateColumns(const LocateTask* tasks, int count, const DeviceColumns& colu
   checkLaunch("locateColumns");
 }
 
-void findShadowEdges(const DeviceShadowTask* tasks, int count, int ranges, const ExcessGrid& grid,
+void findShadowEdges(const DeviceShadowTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
                      cudaStream_t stream) {
   const auto emitters = static_cast<unsigned>(count);
   termsKernel<<<dim3(blocksFor(ranges), emitters), kThreads, 0, stream>>>(tasks);
   checkLaunch("rangeTerms");
-  const dim3 blocks(blocksFor(static_cast<int>(grid.column_count)), emitters);
-  edgesKernel<<<blocks, kThreads, 0, stream>>>(tasks, grid);
+  const Tiles tiles(grid, row, count);
+  edgesKernel<<<static_cast<unsigned>(tiles.count()), kColumnThreads, 0, stream>>>(tasks, grid, tiles);
   checkLaunch("shadowEdges");
 }
 

@@ -52,7 +52,8 @@ void locateColumns(const LocateTask* tasks, int count, const DeviceColumns& colu
 /// Finds the columns' shadow edges and counts unknown columns.
 /// @param ranges  the largest number of posts of a task
 /// @param grid    of device memory
-void findShadowEdges(const DeviceShadowTask* tasks, int count, int ranges, const ExcessGrid& grid,
+/// @param row     columns along x
+void findShadowEdges(const DeviceShadowTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
                      cudaStream_t stream);
 
 /// Sets the bytes of columns with an unknown shadow edge to 1, the others to 0.

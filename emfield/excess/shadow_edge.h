@@ -25,6 +25,7 @@ struct ShadowTask {
   Station station;
   GroundPosts ground;
   const RangeTerms<float>* terms = nullptr;  ///< of the posts' ranges; not read over a smooth earth
+  float highest_msl_m = HUGE_VALF;           ///< see highestPost_m()
 
   EMSCAPE_HD HorizonGeometry<float> geometry() const {
     return {float(station.effective_height_msl_m), float(station.effective_earth_radius_m)};
@@ -54,6 +55,28 @@ struct ShadowTask {
       }
     }
     return -HUGE_VALF;
+  }
+
+  /// First of the posts 1..count - 1 toward a column's ground that may hide a voxel of it: from a station
+  /// above all terrain nearer posts are below the line of sight to the lowest voxel.
+  EMSCAPE_HD int firstPost(const ExcessGrid& grid, std::size_t c, const FastInverse& path, int count) const {
+    const HorizonGeometry<float> g = geometry();
+    const float above_m = g.station_height_msl_m - highest_msl_m;
+    const int lowest = grid.firstValid(c);
+    if (grid.tilted || station.refraction.exponential || !(above_m > 0) || lowest >= grid.layers) return 1;
+    const auto height_msl_m = float(heightMsl_m(grid.columns[c], double(grid.t_m[lowest])));
+    constexpr float kRounding = 2e-5f;  // rad
+    const float slope = g.slopeTo(height_msl_m, g.termsAt(path.distance_m)) - kRounding;
+    // Up to the horizon of a sphere at that height the slope to it rises with the range.
+    const int rising = ground.lastBefore(double(std::sqrt(1.9f * g.effective_earth_radius_m * above_m))) + 1;
+    int begin = 1, end = rising < count ? rising : count;
+    while (begin < end) {
+      const int middle = (begin + end) / 2;
+      const bool is_below = g.slopeTo(highest_msl_m, terms[middle]) < slope;
+      begin = is_below ? middle + 1 : begin;
+      end = is_below ? end : middle;
+    }
+    return begin;
   }
 
   /// Height (m above mean sea level) of the grazing ray over a range.

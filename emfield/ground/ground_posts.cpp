@@ -1,6 +1,9 @@
 #include "emfield/ground/ground_posts.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
 
@@ -33,6 +36,28 @@ GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<doub
     ground.crossings_per_m = kMaxPerPost / terrain->postSpacing_m();
   }
   return ground;
+}
+
+float highestPost_m(const scenario::TerrainView& terrain) {
+  if (terrain.count != 1) return HUGE_VALF;
+  const scenario::TerrainRaster& raster = terrain.rasters[0];
+  // Posts beyond the limits of look-ups are not read.
+  const int first_row = static_cast<int>(raster.first_row), first = static_cast<int>(raster.first_column);
+  const int rows = static_cast<int>(std::ceil(raster.last_row)) + 1 - first_row;
+  const int last = static_cast<int>(std::ceil(raster.last_column));
+  std::vector<float> of_rows(static_cast<std::size_t>(rows), -HUGE_VALF);
+  parallelFor(rows, 64, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      float& highest = of_rows[static_cast<std::size_t>(row)];
+      const float* const posts_msl_m =
+          raster.heights_msl_m + static_cast<long long>(first_row + row) * raster.columns;
+      for (int i = first; i <= last; ++i)  // a void counts as infinite
+        highest = posts_msl_m[i] <= highest    ? highest
+                  : std::isnan(posts_msl_m[i]) ? HUGE_VALF
+                                               : posts_msl_m[i];
+    }
+  });
+  return *std::max_element(of_rows.begin(), of_rows.end());
 }
 
 }  // namespace emscape::emfield

@@ -71,19 +71,24 @@ EMSCAPE_HD inline int maxPosts(const Station& station, const GroundPosts& ground
 /// The ground below an emitter's paths, in host memory. Pointers are valid as long as both arguments.
 GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<double>& ranges_m);
 
+/// Height (m above mean sea level) that no post exceeds, of a terrain of one raster in which none is missing;
+/// infinity of any other. Reads every post. The raster may be larger than Terrain::box().
+float highestPost_m(const scenario::TerrainView& terrain);
+
 /// Calls visit(post, height above mean sea level (m)) for the first `count` posts toward a point, in their
 /// order; NaN where the terrain is missing.
+/// @param first  index of the first post
 template <class Visit>
 EMSCAPE_HD void visitPosts(const Station& station, const GroundPosts& ground, const FastInverse& path,
-                           int count, Visit visit) {
+                           int count, Visit visit, int first = 0) {
   if (ground.is_smooth) {
-    for (int i = 0; i < count; ++i) visit(i, 0.0f);
+    for (int i = first; i < count; ++i) visit(i, 0.0f);
     return;
   }
   constexpr int kAtOnce = 4;  // independent loads
   TerrainWalk walk(station, ground.terrain, path);
   const double* const ranges_m = ground.ranges_m;
-  for (int i = 0; i < count;) {
+  for (int i = first; i < count;) {
     const TerrainChord& chord = walk.chordAt(ranges_m[i]);
     const RasterChord in_raster = chord.in_raster;
     const int beyond = ground.lastBefore(walk.endOfChord_m(ranges_m[i])) + 1;

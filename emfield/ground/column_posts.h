@@ -1,14 +1,15 @@
-/// The posts of a column's path, in the order of their ranges, by one thread; for nvcc.
+/// The posts of a column's path, by one thread of the device, which stores none; also on the host, for tests.
 #pragma once
 
-#include <cuda_runtime_api.h>
-
+#include <cmath>
 #include <cstdint>
 
+#include "base/math/device_loop.h"
 #include "emfield/ground/chord_crossings.h"
 #include "emfield/ground/ground_posts.h"
+#include "emscape/base/host_device.h"
 
-namespace emscape::emfield::cuda {
+namespace emscape::emfield {
 
 /// A post between the emitter and the receivers.
 struct PathPost {
@@ -24,7 +25,7 @@ struct PostsAround {
 class ColumnPosts {
  public:
   /// @param at_crossings  false: regular posts
-  __device__ ColumnPosts(const Station& station, const GroundPosts& ground, const FastInverse& path,
+  EMSCAPE_HD ColumnPosts(const Station& station, const GroundPosts& ground, const FastInverse& path,
                          bool at_crossings)
       : station_(station), ground_(ground), path_(path), around_(RasterChord{}) {
     if (!at_crossings || ground.is_smooth) regular_chords_ = ~0ull;
@@ -32,17 +33,16 @@ class ColumnPosts {
 
   /// Calls visit(PathPost) for the posts from the first one beyond the emitter on.
   /// @tparam kOrdered  in the order of their ranges, which takes more time
-  /// @param limit_m    posts beyond it may be left out, not with kOrdered
+  /// @param nearest_m  nearer posts may be left out, not with kOrdered
   /// @return false if the visits are void: a chord was found whose posts are regular ones, and the next call
   /// knows it
   template <bool kOrdered, class Visit>
-  __device__ bool each(float limit_m, const Visit& visit) {
+  EMSCAPE_HD bool each(float nearest_m, const Visit& visit) {
     const int regular = ground_.lastBefore(path_.distance_m) + 1;
     const bool is_smooth = ground_.is_smooth, with_beginnings = regular_chords_ != ~0ull;
     const Chords of_path = chords();
     for (int n = 0; n < of_path.count; ++n) {
       const double begin_m = n * of_path.length_m;
-      if (begin_m > static_cast<double>(limit_m)) break;
       TerrainChord chord;
       if (!is_smooth) prepare(station_, ground_, path_, n, chord);
       int first = n == 0 ? 1 : ground_.lastBefore(begin_m) + 1;
@@ -51,11 +51,11 @@ class ColumnPosts {
       bool with_crossings = !isRegular(n);
       if (with_crossings) {
         // Posts besides the crossings: the first regular ones, or the chord's beginning.
-        const int others_end = n == 0 ? max(min(ground_.near_count, min(end, 128)), 1) : first;
+        const int others_end = n == 0 ? larger(smaller(ground_.near_count, smaller(end, 128)), 1) : first;
         const double* const others_m = n == 0 ? ground_.ranges_m + 1 : &begin_m;
         const int others = n == 0 ? others_end - 1 : 1;
         const Found found = kOrdered ? eachInOrder(chord, begin_m, of_path.length_m, others_m, others, visit)
-                                     : eachCrossing(chord, begin_m, of_path.length_m, limit_m, visit);
+                                     : eachCrossing(chord, begin_m, of_path.length_m, nearest_m, visit);
         if (found != Found::all) regular_chords_ |= bitOf(n);
         if (found == Found::void_post) return false;
         with_crossings = found == Found::all;
@@ -63,9 +63,10 @@ class ColumnPosts {
         if (with_crossings) end = others_end;
       }
       if (!with_crossings && beginning > 0 && first < end && ground_.ranges_m[first] <= begin_m) ++first;
-#pragma unroll 1
+      EMSCAPE_UNROLL_BY(1)
       for (int i = first - beginning; i < end; ++i) {
         const double range_m = i < first ? begin_m : ground_.ranges_m[i];
+        if (with_crossings && range_m < static_cast<double>(nearest_m)) continue;
         visit(PathPost{fminf(static_cast<float>(range_m), farthest_m()),
                        is_smooth ? 0 : heightAt(chord, range_m)});
       }
@@ -74,7 +75,7 @@ class ColumnPosts {
   }
 
   /// After each().
-  __device__ PostsAround around(float range_m) {
+  EMSCAPE_HD PostsAround around(float range_m) {
     PostsAround found{-HUGE_VALF, HUGE_VALF};
     const auto add = [&](double at_m) {
       const float here_m = fminf(static_cast<float>(at_m), farthest_m());
@@ -86,7 +87,7 @@ class ColumnPosts {
     };
     const int regular = ground_.lastBefore(path_.distance_m) + 1;
     const auto addRegular = [&](int end) {
-      const int before = min(ground_.lastBefore(static_cast<double>(range_m)), end - 1);
+      const int before = smaller(ground_.lastBefore(static_cast<double>(range_m)), end - 1);
       if (before > 0) add(ground_.ranges_m[before]);
       if (before + 1 < end) add(ground_.ranges_m[before + 1]);
     };
@@ -96,7 +97,7 @@ class ColumnPosts {
     }
     const Chords of_path = chords();
     const double chord_m = of_path.length_m;
-    const int n = min(static_cast<int>(static_cast<double>(range_m) / chord_m), of_path.count - 1);
+    const int n = smaller(static_cast<int>(static_cast<double>(range_m) / chord_m), of_path.count - 1);
     const double begin_m = n * chord_m;
     if (n > 0) add(begin_m);
     if (n + 1 < of_path.count) add(begin_m + chord_m);
@@ -104,14 +105,17 @@ class ColumnPosts {
       addRegular(regular);
       return found;
     }
-    if (n == 0) addRegular(min(ground_.near_count, regular));
-    TerrainChord chord;
-    prepare(station_, ground_, path_, n, chord);
-    const ChordCrossings crossings(chord.in_raster);
+    if (n == 0) addRegular(smaller(ground_.near_count, regular));
+    if (n != around_chord_) {
+      TerrainChord chord;
+      prepare(station_, ground_, path_, n, chord);
+      around_ = ChordCrossings(chord.in_raster);
+      around_chord_ = n;
+    }
     const float part = fminf(static_cast<float>((static_cast<double>(range_m) - begin_m) / chord_m), 1);
-    for (const LineCrossings* lines : {&crossings.columns, &crossings.rows}) {
+    for (const LineCrossings* lines : {&around_.columns, &around_.rows}) {
       const int next = lines->countBefore(part, static_cast<int>(lines->coordinate.at(part)));
-      for (int i = max(next - 1, 0); i < min(next + 1, lines->count); ++i)
+      for (int i = larger(next - 1, 0); i < smaller(next + 1, lines->count); ++i)
         add(crossingRange_m(begin_m, chord_m, lines->part(i, lines->line(i)), path_.distance_m));
     }
     return found;
@@ -124,43 +128,37 @@ class ColumnPosts {
     double length_m;
   };
 
-  __device__ Chords chords() const {
+  EMSCAPE_HD Chords chords() const {
     if (ground_.is_smooth) return {1, path_.distance_m};
     const TerrainWalk walk(station_, ground_.terrain, path_);
     return {walk.chords(), walk.chord_m()};
   }
 
-  static __device__ std::uint64_t bitOf(int chord) {
-    return 1ull << min(chord, 62);
-  }
-  __device__ bool isRegular(int chord) const {
-    return (regular_chords_ & bitOf(chord)) != 0;
-  }
+  static EMSCAPE_HD std::uint64_t bitOf(int chord) { return 1ull << smaller(chord, 62); }
+  EMSCAPE_HD bool isRegular(int chord) const { return (regular_chords_ & bitOf(chord)) != 0; }
   /// A post may be at the receivers in float.
-  __device__ float farthest_m() const {
-    return static_cast<float>(path_.distance_m) * (1 - 2.4e-7f);
-  }
+  EMSCAPE_HD float farthest_m() const { return static_cast<float>(path_.distance_m) * (1 - 2.4e-7f); }
 
   /// Height above mean sea level (m), with the clutter where that counts; NaN over missing terrain.
-  __device__ float heightAt(const TerrainChord& chord, double range_m) const {
+  EMSCAPE_HD float heightAt(const TerrainChord& chord, double range_m) const {
     float height_msl_m = chord.in_raster.corner_msl_m != nullptr ? chord.in_raster.heightAt(range_m) : NAN;
-    if (isnan(height_msl_m)) height_msl_m = amongRasters(ground_, chord, range_m);
+    if (std::isnan(height_msl_m)) height_msl_m = amongRasters(ground_, chord, range_m);
     return raised(chord, range_m, height_msl_m);
   }
-  __device__ float raised(const TerrainChord& chord, double range_m, float height_msl_m) const {
+  EMSCAPE_HD float raised(const TerrainChord& chord, double range_m, float height_msl_m) const {
     return ground_.is_raised ? height_msl_m + clutterAt(chord, range_m, height_msl_m) : height_msl_m;
   }
   // Separate calls, so that their registers are not part of those of the loops over posts.
-  static __device__ __noinline__ void prepare(const Station& station, const GroundPosts& ground,
-                                              const FastInverse& path, int n, TerrainChord& chord) {
+  EMSCAPE_NOINLINE static EMSCAPE_HD void prepare(const Station& station, const GroundPosts& ground,
+                                                  const FastInverse& path, int n, TerrainChord& chord) {
     chord = TerrainWalk(station, ground.terrain, path).chord(n);
   }
-  static __device__ __noinline__ float amongRasters(const GroundPosts& ground, const TerrainChord& chord,
-                                                    double range_m) {
+  EMSCAPE_NOINLINE static EMSCAPE_HD float amongRasters(const GroundPosts& ground, const TerrainChord& chord,
+                                                        double range_m) {
     return chord.heightAmongRasters(ground.terrain, range_m);
   }
-  __device__ __noinline__ float clutterAt(const TerrainChord& chord, double range_m,
-                                          float ground_msl_m) const {
+  EMSCAPE_NOINLINE EMSCAPE_HD float clutterAt(const TerrainChord& chord, double range_m,
+                                              float ground_msl_m) const {
     if (!(range_m > kClutterFree_m && range_m < path_.distance_m - kClutterFree_m)) return 0;
     const double part = (range_m - chord.in_raster.begin_m) * chord.in_raster.per_m;
     const float cover_m = ground_.terrain.coverAt(chord.position.latitude_rad.at(part),
@@ -168,21 +166,9 @@ class ColumnPosts {
     return cover_m > 0 ? cover_m : 0;
   }
 
-  // Within 2 units in the last place, without a branch.
-  static __device__ float fastReciprocal(float x) {
-    float result;
-    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(result) : "f"(x));
-    return result;
-  }
-  static __device__ float fastRoot(float x) {
-    float result;
-    asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(result) : "f"(x));
-    return result;
-  }
-
   /// The crossings of a chord, column by column, then row by row.
   template <class Visit>
-  __device__ Found eachCrossing(const TerrainChord& chord, double begin_m, double chord_m, float limit_m,
+  EMSCAPE_HD Found eachCrossing(const TerrainChord& chord, double begin_m, double chord_m, float nearest_m,
                                 const Visit& visit) const {
     if (chord.in_raster.corner_msl_m == nullptr) return Found::too_many;
     const ChordCrossings crossings(chord.in_raster);
@@ -192,19 +178,19 @@ class ColumnPosts {
     const auto from_m = static_cast<float>(begin_m), length_m = static_cast<float>(chord_m);
     const float farthest_m = this->farthest_m();
     const bool is_raised = ground_.is_raised;
-    const float limit_part = (limit_m - from_m) / length_m;
+    const float nearest_part = (nearest_m - from_m) / length_m;
     float unknown = 0;
-#pragma unroll 1
+    EMSCAPE_UNROLL_BY(1)
     for (int run = 0; run < 4; ++run) {  // before and after the turn of columns and rows
       const bool of_columns = run < 2, is_first = run % 2 == 0;
       const LineCrossings lines = of_columns ? crossings.columns : crossings.rows;
       const Parabola<float> across = of_columns ? crossings.rows.coordinate : crossings.columns.coordinate;
-      const int first = is_first ? 0 : lines.before_turn;
-      const int within =
-          limit_part < 1
-              ? lines.countBefore(limit_part, static_cast<int>(lines.coordinate.at(limit_part))) + 1
-              : lines.count;
-      const int end = min(is_first ? lines.before_turn : lines.count, within);
+      int first = is_first ? 0 : lines.before_turn;
+      if (nearest_part > 0) {
+        const float part = fminf(nearest_part, 1);
+        first = larger(first, lines.countBefore(part, static_cast<int>(lines.coordinate.at(part))) - 1);
+      }
+      const int end = is_first ? lines.before_turn : lines.count;
       if (first >= end) continue;
       const int line_step = of_columns ? 1 : row_posts, cell_step = of_columns ? row_posts : 1;
       const int step = (lines.to_root > 0) == is_first ? 1 : -1;
@@ -212,10 +198,10 @@ class ColumnPosts {
       const int first_line = lines.line(first);
       float to_line = static_cast<float>(first_line) - lines.coordinate.c[0];
       const float* line_msl_m = corner_msl_m + static_cast<long long>(first_line) * line_step;
-#pragma unroll 2
+      EMSCAPE_UNROLL_BY(2)
       for (int n = first; n < end; ++n) {
-        const float sum = fmaf(lines.to_root, fastRoot(fmaxf(fmaf(4 * c2, to_line, square), 0)), c1);
-        float part = (is_first ? 2 * to_line : -sum) * fastReciprocal(is_first ? sum : 2 * c2);
+        const float sum = fmaf(lines.to_root, approximateRoot(fmaxf(fmaf(4 * c2, to_line, square), 0)), c1);
+        float part = (is_first ? 2 * to_line : -sum) * approximateReciprocal(is_first ? sum : 2 * c2);
         part = fminf(fmaxf(part, 0), 1);
         const float at = across.at(part);
         const int cell = static_cast<int>(at);
@@ -231,13 +217,13 @@ class ColumnPosts {
         line_msl_m += step * line_step;
       }
     }
-    return isnan(unknown) ? Found::void_post : Found::all;
+    return std::isnan(unknown) ? Found::void_post : Found::all;
   }
 
   /// The crossings of a chord and other posts, in their order: between two crossings with the lines of which
   /// there are more, those with the others.
   template <class Visit>
-  __device__ Found eachInOrder(const TerrainChord& chord, double begin_m, double chord_m,
+  EMSCAPE_HD Found eachInOrder(const TerrainChord& chord, double begin_m, double chord_m,
                                const double* others_m, int others, const Visit& visit) const {
     if (chord.in_raster.corner_msl_m == nullptr) return Found::too_many;
     const ChordCrossings crossings(chord.in_raster);
@@ -292,15 +278,15 @@ class ColumnPosts {
           PathPost{fminf(static_cast<float>(others_m[other]), farthest_m), heightAt(chord, others_m[other])});
       ++other;
     }
-    return isnan(unknown) ? Found::void_post : Found::all;
+    return std::isnan(unknown) ? Found::void_post : Found::all;
   }
 
   /// LineCrossings::part(), within 2e-7.
-  static __device__ float partOf(const LineCrossings& of, bool is_first, int line) {
+  static EMSCAPE_HD float partOf(const LineCrossings& of, bool is_first, int line) {
     const float* const c = of.coordinate.c;
     const float to_line = static_cast<float>(line) - c[0];
-    const float sum = fmaf(of.to_root, fastRoot(fmaxf(fmaf(4 * c[2], to_line, c[1] * c[1]), 0)), c[1]);
-    const float part = (is_first ? 2 * to_line : -sum) * fastReciprocal(is_first ? sum : 2 * c[2]);
+    const float sum = fmaf(of.to_root, approximateRoot(fmaxf(fmaf(4 * c[2], to_line, c[1] * c[1]), 0)), c[1]);
+    const float part = (is_first ? 2 * to_line : -sum) * approximateReciprocal(is_first ? sum : 2 * c[2]);
     return fminf(fmaxf(part, 0), 1);
   }
 
@@ -312,4 +298,4 @@ class ColumnPosts {
   std::uint64_t regular_chords_ = 0;  ///< by bitOf(); all: the profile has regular posts only
 };
 
-}  // namespace emscape::emfield::cuda
+}  // namespace emscape::emfield

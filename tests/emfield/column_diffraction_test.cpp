@@ -1,0 +1,216 @@
+// The functions of `diffraction` and `horizon` that the GPU runs for each column, on the host, against those
+// of the CPU.
+#include "emfield/excess/column_diffraction.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "emfield/excess/emitter_excess.h"
+#include "emfield/excess/shadow_edge.h"
+#include "tests/emfield/made_terrain.h"
+#include "tests/emfield/test_scenario.h"
+
+namespace emscape::emfield {
+namespace {
+
+using testing::MadeTerrain;
+
+/// Made once: it takes a second.
+std::shared_ptr<const MadeTerrain> terrainOf(bool has_hole) {
+  static const auto whole = std::make_shared<const MadeTerrain>(44.5, -71.5, 1.2);
+  static const auto with_hole = std::make_shared<const MadeTerrain>(44.5, -71.5, 1.2, 0.1);
+  return has_hole ? with_hole : whole;
+}
+
+/// An emitter in the middle of a region over made terrain.
+struct SeenField {
+  std::shared_ptr<const MadeTerrain> terrain;
+  std::shared_ptr<scenario::Scenario> scenario;
+  scenario::EmitterState state;
+  Station station;
+  GridColumns columns;
+  std::vector<double> ranges_m;
+  GroundPosts ground;
+  ExcessGrid grid;
+
+  SeenField(propagation::PropagationModel model, double side_m, double height_agl_m, double frequency_hz,
+            bool has_hole = false, FrameKind frame = FrameKind::altitude)
+      : terrain(terrainOf(has_hole)) {
+    scenario = testing::emptyScenario(frame, 44.5, -71.5, {side_m, side_m, 4000}, {14, 11, 40});
+    scenario::Emitter emitter = testing::plainEmitter("radar", 0);
+    emitter.frequency_hz = frequency_hz;
+    emitter.propagation.model = model;
+    const double ground_m = terrain->heightMsl_m(44.5, -71.5);
+    testing::addEmitter(*scenario, {44.5, -71.5, ground_m + height_agl_m - 28}, emitter);
+    state = scenario::snapshotAt(scenario, terrain.get(), 0).emitters[0];
+    station = makeStation(state.position, state.height_msl_m, scenario->atmosphere);
+    columns = makeGridColumns(gridOf(scenario->region), terrain.get());
+    const propagation::PathExtent extent = pathExtent(station, columns);
+    ranges_m = postRanges(extent.farthest_m, postSpacing_m(terrain.get()));
+    ground = groundPosts(terrain.get(), ranges_m);
+    grid = excessGrid(columns, terrain.get());
+  }
+
+  float highest_m() const { return highestPost_m(terrain->view()); }
+  bool isCounted(std::size_t column, int layer) const {
+    return layer >= grid.firstValid(column) && !grid.isWithoutGround(column);
+  }
+};
+
+/// Losses (dB) of all voxels.
+std::vector<float> lossesOfTheCpu(const SeenField& setup, const EmitterExcess& excess) {
+  std::vector<float> loss_db(setup.columns.count() * setup.columns.t_m.size());
+  std::vector<float> edge_m(setup.columns.count());
+  fillExcessCpu(excess, setup.station, setup.grid, setup.ground, nullptr,
+                {{nullptr, loss_db.data()}, nullptr, nullptr, edge_m.data()});
+  return loss_db;
+}
+template <int kReceivers>
+std::vector<float> lossesOfTheDevice(const SeenField& setup, const EmitterExcess& excess,
+                                     float highest_msl_m) {
+  std::vector<float> loss_db(setup.columns.count() * setup.columns.t_m.size());
+  DiffractionTask task{
+      std::get<propagation::DiffractionExcess>(excess.model), excess.air,      setup.station, setup.ground,
+      {{nullptr, loss_db.data()}, nullptr, nullptr, nullptr}, excess.terminal, true,          highest_msl_m};
+  for (int c = 0; c < static_cast<int>(setup.columns.count()); ++c) {
+    for (int segment = 0; segment < setup.grid.segments; ++segment)
+      fillDiffraction<kReceivers>(task, setup.grid, c, segment);
+  }
+  return loss_db;
+}
+
+/// @param edge_losses  that may differ by more: the smooth earth's correction begins with a step
+void expectSameLosses(const SeenField& setup, const std::vector<float>& device, const std::vector<float>& cpu,
+                      int edge_losses = 2) {
+  int lossy = 0, different = 0;
+  for (std::size_t voxel = 0; voxel < cpu.size(); ++voxel) {
+    const std::size_t column = voxel % setup.columns.count();
+    if (!setup.isCounted(column, static_cast<int>(voxel / setup.columns.count()))) continue;
+    ASSERT_EQ(std::isnan(device[voxel]), std::isnan(cpu[voxel])) << voxel;
+    lossy += cpu[voxel] > 0;
+    different += std::abs(device[voxel] - cpu[voxel]) > 0.01f;
+  }
+  EXPECT_GT(lossy, 50);
+  EXPECT_LE(different, edge_losses);
+}
+
+EmitterExcess planned(const SeenField& setup) {
+  return planExcess(*setup.scenario, setup.scenario->emitters[0], setup.state.beam, setup.station,
+                    setup.terrain.get(), setup.columns);
+}
+
+TEST(ColumnDiffraction, OfTheDeviceIsThatOfTheCpu) {
+  for (const double height_agl_m : {15.0, 1500.0}) {
+    for (const double frequency_hz : {60e6, 3e9}) {
+      SCOPED_TRACE(::testing::Message() << height_agl_m << " m, " << frequency_hz << " Hz");
+      const SeenField setup(propagation::PropagationModel::diffraction, 50e3, height_agl_m, frequency_hz);
+      const EmitterExcess excess = planned(setup);
+      const std::vector<float> cpu = lossesOfTheCpu(setup, excess);
+      expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), cpu);
+      expectSameLosses(setup, lossesOfTheDevice<1>(setup, excess, HUGE_VALF), cpu);
+    }
+  }
+}
+
+TEST(ColumnDiffraction, OfLeaningColumnsIsThatOfTheCpu) {
+  const SeenField setup(propagation::PropagationModel::diffraction, 50e3, 15, 1e9, false, FrameKind::enu);
+  const EmitterExcess excess = planned(setup);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess));
+}
+
+TEST(ColumnDiffraction, PostsBelowEveryLineOfSightAreOfNoAccount) {
+  for (const double height_agl_m : {900.0, 1500.0, 4000.0}) {
+    const SeenField setup(propagation::PropagationModel::diffraction, 50e3, height_agl_m, 1e9);
+    const EmitterExcess excess = planned(setup);
+    EXPECT_EQ((lossesOfTheDevice<8>(setup, excess, setup.highest_m())),
+              (lossesOfTheDevice<8>(setup, excess, HUGE_VALF)));
+  }
+}
+
+TEST(ColumnDiffraction, OfMoreCandidatesThanThereIsRoomForIsTheSame) {
+  const SeenField setup(propagation::PropagationModel::diffraction, 90e3, 15, 3e9);
+  const EmitterExcess excess = planned(setup);
+  int too_many = 0;
+  for (std::size_t c = 0; c < setup.columns.count(); ++c) {
+    const FastInverse path = setup.grid.coordinatesOf(setup.station, c, 0);
+    ColumnPosts posts(setup.station, setup.ground, path, true);
+    diffraction_detail::CandidatePosts candidates;
+    diffraction_detail::CandidatePosts::Records records;
+    candidates.clear();
+    const auto distance_m = static_cast<float>(path.distance_m);
+    posts.each<true>(0, [&](const PathPost& post) {  // seen from the ground in a plain
+      const float root = 1 / std::sqrt(post.range_m * (distance_m - post.range_m));
+      if (records.add<true>(post, post.height_msl_m, post.height_msl_m, root)) candidates.add(post);
+    });
+    too_many += !candidates.areComplete();
+  }
+  EXPECT_GT(too_many, 0);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess), 10);
+}
+
+TEST(ColumnDiffraction, IsUnknownAcrossAHole) {
+  const SeenField setup(propagation::PropagationModel::diffraction, 80e3, 15, 1e9, true);
+  const EmitterExcess excess = planned(setup);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess), 10);
+}
+
+TEST(HighestPost, IsThatOfTheWholeRasterAndInfiniteWithVoids) {
+  const scenario::TerrainView terrain = terrainOf(false)->view();
+  const scenario::TerrainRaster& raster = terrain.rasters[0];
+  const float* const posts = raster.heights_msl_m;
+  EXPECT_EQ(highestPost_m(terrain), *std::max_element(posts, posts + raster.columns * raster.rows));
+  EXPECT_EQ(highestPost_m(terrainOf(true)->view()), HUGE_VALF);
+  EXPECT_EQ(highestPost_m({&raster, 0}), HUGE_VALF);
+  scenario::TerrainRaster framed;  // as of files: void beyond the limits of look-ups
+  std::vector<float> heights_m(25, NAN);
+  for (const int post : {6, 7, 8, 11, 12, 13, 16, 17, 18}) heights_m[post] = static_cast<float>(post);
+  framed.heights_msl_m = heights_m.data();
+  framed.columns = framed.rows = 5;
+  framed.first_column = framed.first_row = 1;
+  framed.last_column = framed.last_row = 3;
+  EXPECT_EQ(highestPost_m({&framed, 1}), 18);
+}
+
+TEST(ShadowEdge, PostsBelowEveryLineOfSightAreOfNoAccount) {
+  int left_out = 0, in_shadow = 0;
+  for (const double height_agl_m : {15.0, 900.0, 1500.0, 4000.0}) {
+    const SeenField setup(propagation::PropagationModel::horizon, 50e3, height_agl_m, 1e9);
+    ShadowTask task{setup.station, setup.ground};
+    const HorizonGeometry<float> geometry = task.geometry();
+    std::vector<RangeTerms<float>> terms;
+    for (const double range_m : setup.ranges_m) terms.push_back(geometry.termsAt(range_m));
+    task.terms = terms.data();
+    const float highest_m = setup.highest_m();
+    for (std::size_t c = 0; c < setup.columns.count(); ++c) {
+      const auto edgeOf = [&](float highest_msl_m) {
+        task.highest_msl_m = highest_msl_m;
+        return task.edge_m(setup.grid, c, [&](const FastInverse& path, int count) {
+          propagation::GrazingSlope<float> slope;
+          const int first = task.firstPost(setup.grid, c, path, count);
+          left_out += first - 1;
+          visitPosts(
+              setup.station, setup.ground, path, count,
+              [&](int i, float height_m) { slope.add(height_m, geometry.slopeTo(height_m, terms[i])); },
+              first);
+          return slope.value();
+        });
+      };
+      const float all_m = edgeOf(HUGE_VALF), some_m = edgeOf(highest_m);
+      for (int k = setup.grid.firstValid(c); k < setup.grid.layers; ++k) {
+        const float t_m = setup.grid.t_m[k];
+        ASSERT_EQ(t_m >= some_m, t_m >= all_m) << c << ' ' << k;
+        in_shadow += t_m < all_m;
+      }
+    }
+  }
+  EXPECT_GT(left_out, 3000);
+  EXPECT_GT(in_shadow, 100);
+}
+
+}  // namespace
+}  // namespace emscape::emfield
