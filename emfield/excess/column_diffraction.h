@@ -390,9 +390,10 @@ EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& g
     return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[smaller(layer, end - 1)])));
   };
   const auto addOthers = [&](int layer, float loss_db) {
-    if (!task.air.isClear()) loss_db += air.lossDb(heightOf(layer));
     if (task.terminal.isSet())
-      loss_db += task.terminal.lossDb(static_cast<float>(path.distance_m), heightOf(layer) - ground_msl_m);
+      loss_db = task.terminal.withLossDb(loss_db, static_cast<float>(path.distance_m),
+                                         heightOf(layer) - ground_msl_m);
+    if (!task.air.isClear()) loss_db += air.lossDb(heightOf(layer));
     set(layer, loss_db);
   };
   if (path.distance_m > 0) {  // not at the emitter itself
