@@ -117,6 +117,17 @@ TEST(ColumnDiffraction, OfTheDeviceIsThatOfTheCpu) {
   }
 }
 
+TEST(ColumnDiffraction, WithTerminalClutterIsThatOfTheCpu) {
+  const SeenField setup(propagation::PropagationModel::diffraction, 50e3, 15, 3e9);
+  EmitterExcess excess = planned(setup);
+  excess.terminal.frequency_ghz = 3;
+  excess.terminal.below_m = 300;  // of several layers
+  for (const bool is_larger : {false, true}) {
+    excess.terminal.is_larger = is_larger;
+    expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess));
+  }
+}
+
 TEST(ColumnDiffraction, OfLeaningColumnsIsThatOfTheCpu) {
   const SeenField setup(propagation::PropagationModel::diffraction, 50e3, 15, 1e9, false, FrameKind::enu);
   const EmitterExcess excess = planned(setup);
