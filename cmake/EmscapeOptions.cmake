@@ -26,8 +26,10 @@ function(emscape_supported variable)
   set(${variable} "${supported}" PARENT_SCOPE)
 endfunction()
 
-# Gathers of vector loops as instructions: without these g++ 12 loads the elements one by one, which takes up to twice as long.
-set(EMSCAPE_GATHERS -mtune-ctrl=use_gather_2parts,use_gather_4parts,use_gather)
+# Gathers of vector loops as instructions: without these g++ 12 loads the elements one by one, which takes up to twice as long. The
+# second form is that of g++ 13.
+set(EMSCAPE_GATHERS -mtune-ctrl=use_gather_2parts,use_gather_4parts,use_gather
+                    -mtune-ctrl=use_gather_2parts,use_gather_4parts,use_gather_8parts)
 
 set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
