@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/geodesy/geoid_grid.h"
+#include "base/large_array.h"
 #include "emfield/columns/foot_inverse.h"
 #include "emfield/columns/position_columns.h"
 #include "emscape/base/error.h"
@@ -192,7 +193,7 @@ GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* t
   result.dims = grid.dims;
   result.tilted = grid.frame.kind == FrameKind::enu;
   const int column_count = grid.dims.x * grid.dims.y;
-  result.of_grid.resize(column_count);
+  resizeInParts(result.of_grid, static_cast<std::size_t>(column_count));
   for (int k = 0; k < grid.dims.z; ++k) result.t_m.push_back(static_cast<float>(grid.center_m(0, 0, k).z));
   parallelFor(grid.dims.y, 1, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {

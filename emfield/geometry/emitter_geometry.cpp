@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/large_array.h"
 #include "base/stopwatch.h"
 #include "emfield/columns/column_geometry.h"
 #include "emfield/excess/emitter_excess.h"
@@ -22,17 +23,6 @@ bool isSameColumn(const ColumnsView& columns, int a, int b) {
   if (columns.of_surface == nullptr) return false;
   const PositionColumn &first = columns.of_surface[a], &second = columns.of_surface[b];
   return first.foot_ecef_m == second.foot_ecef_m && first.base_ellipsoid_m == second.base_ellipsoid_m;
-}
-
-/// Gives an empty array its size, with checkpoints: the memory of a large one takes a tenth of a second.
-template <class Array>
-void allocate(Array& array, std::size_t size) {
-  constexpr std::size_t kItemsAtOnce = std::size_t{1} << 20;
-  array.reserve(size);
-  while (array.size() < size) {
-    checkpoint();
-    array.resize(std::min(size, array.size() + kItemsAtOnce));
-  }
 }
 
 }  // namespace
@@ -88,10 +78,10 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
     marchTables(emitter, excess);
     times.march_ms += watch.lap_ms();
     const std::size_t voxels = column_count_ * columns.t_m.size();
-    allocate(excess_, columns.every_height ? 0 : voxels);
+    resizeInParts(excess_, columns.every_height ? 0 : voxels);
     excess_db_.resize(columns.every_height ? voxels : 0);
-    if (model.has_reflected_ray) allocate(reflected_, voxels);
-    if (needs.mechanisms && hasMechanisms(model)) allocate(mechanisms_, voxels);
+    if (model.has_reflected_ray) resizeInParts(reflected_, voxels);
+    if (needs.mechanisms && hasMechanisms(model)) resizeInParts(mechanisms_, voxels);
     store = {excess_.empty() ? nullptr : excess_.data(), excess_db_.empty() ? nullptr : excess_db_.data()};
     times.excess_ms += watch.lap_ms();
     warnings_ |= fillExcessCpu(excess, station, grid, ground, bounds,

@@ -5,6 +5,7 @@
 
 #include "base/files/whole_file.h"
 #include "base/text/quantity_text.h"
+#include "emscape/base/work.h"
 #include "report/text.h"
 #include "report/warnings.h"
 
@@ -78,6 +79,7 @@ Json verticalJson(const VerticalDiagram& diagram, bool with_grid) {
   if (request.smooth_earth) json["surface_msl_m"] = diagram.surface_msl_m;
   json["azimuths"] = Json::array();
   for (const VerticalCut& cut : diagram.cuts) {
+    checkpoint();
     const VerticalReach reach = reachOf(diagram, cut);
     Json of_cut{{"azimuth_deg", cut.azimuth_deg},
                 {"max_range_m", reach.is_any ? Json(reach.range_m) : Json(nullptr)},

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "base/files/file_reading.h"
+#include "emscape/base/work.h"
 #include "emscape/volume/statistics.h"
 #include "volume/byte_reader.h"
 #include "volume/description_check.h"
@@ -145,6 +146,7 @@ class NanoGrid {
     const Interval y = overlap(origin[1], edge, box.first[1], box.dims.y);
     const Interval z = overlap(origin[2], edge, box.first[2], box.dims.z);
     if (x.begin == x.end) return;
+    checkpoint();
     for (int k = z.begin; k < z.end; ++k) {
       for (int j = y.begin; j < y.end; ++j) {
         float* row = box.values.data() + (static_cast<std::size_t>(k) * box.dims.y + j) * box.dims.x;
