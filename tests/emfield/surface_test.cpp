@@ -142,20 +142,6 @@ TEST_P(SurfaceField, SLOW_EqualsPathsAtManyPositions) {
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
 }
 
-// Low antennas and long waves: the earth's own loss decides more often. Positions behind hills whose
-// obstacles prove that it has none are not read whole.
-TEST_P(SurfaceField, SLOW_EqualsPathsAtManyPositionsNearTheGround) {
-  const auto scenario = radarOnRidge(PropagationModel::diffraction);
-  const auto surface = positions(HeightReference::ground, {15, 25, 60}, 300, 200);
-  for (const double frequency_hz : {300e6, 1e9}) {
-    for (const double height_agl_m : {2.0, 20.0}) {
-      scenario->emitters[0].frequency_hz = frequency_hz;
-      scenario->platforms[0].track[0].position.height_agl_m = height_agl_m;
-      EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 3000);
-    }
-  }
-}
-
 /// Hills with patches of woods, houses, water and unknown cells of some 10 m, or with a surface model of the
 /// same posts that has a void.
 class CoveredHills : public MadeTerrain {
