@@ -11,6 +11,7 @@
 #include "apps/emscape/subcommands.h"
 #include "emfield/excess/model_choices.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/work.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
@@ -40,11 +41,13 @@ Problem problemOf(const Error& error, const std::string& scenario_file) {
 /// @param is_allowed  a warning instead of an error
 void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& terrain, bool is_allowed,
                    std::vector<Problem>& problems) {
+  const WorkPart part("heights below the columns", 0, 1);
   const volume::Grid grid = emfield::gridOf(scenario.region);
   const GeoFrame frame(grid.frame);
   long long missing = 0;
   GeodeticPosition first;
   for (int j = 0; j < grid.dims.y; ++j) {
+    reportDone(static_cast<double>(j) / grid.dims.y);
     for (int i = 0; i < grid.dims.x; ++i) {
       const GeodeticPosition position = frame.toGeodetic(grid.center_m(i, j, 0));
       if (!std::isnan(terrain.heightMsl_m(position.latitude_deg, position.longitude_deg))) continue;
@@ -73,6 +76,7 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
 /// @return true if the first step has no error
 bool checkSteps(const scenario::Scenario& scenario, const scenario::Terrain* terrain,
                 std::vector<Problem>& problems) {
+  const WorkPart part("steps of the clock", 0, 0);
   const std::vector<double> times = scenario::timesOf(scenario.clock);
   const auto alone = std::make_shared<scenario::Scenario>(scenario);  // with a single platform at a time
   alone->emitters.clear();

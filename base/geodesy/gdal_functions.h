@@ -54,7 +54,7 @@ const LoadedLibrary& library();
   F(GDALSetColorEntry) F(GDALSetDefaultRAT) F(GDALSetDescription) F(GDALSetGeoTransform) \
   F(GDALSetMetadataItem) F(GDALSetProjection) F(GDALSetRasterCategoryNames) F(GDALSetRasterColorTable) \
   F(GDALSetRasterNoDataValue) F(GDALSetRasterUnitType) F(GDALWarp) F(GDALWarpAppOptionsFree) \
-  F(GDALWarpAppOptionsNew) F(OCTDestroyCoordinateTransformation) F(OCTNewCoordinateTransformation) \
+  F(GDALWarpAppOptionsNew) F(GDALWarpAppOptionsSetProgress) F(OCTDestroyCoordinateTransformation) F(OCTNewCoordinateTransformation) \
   F(OCTTransform) F(OCTTransformEx) F(OGR_FD_GetFieldCount) F(OGR_FD_GetFieldDefn) F(OGR_FD_GetFieldIndex) \
   F(OGR_FD_GetGeomFieldCount) F(OGR_FD_GetGeomFieldDefn) F(OGR_F_Create) F(OGR_F_Destroy) F(OGR_F_GetFID) \
   F(OGR_F_GetFieldAsDouble) F(OGR_F_GetFieldAsInteger) F(OGR_F_GetFieldAsString) F(OGR_F_GetFieldIndex) \

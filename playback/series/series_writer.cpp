@@ -91,6 +91,7 @@ class SeriesWriter {
       setFinalRanges();
     } catch (...) {
       // Finished files are listed; the first failure is rethrown.
+      const WorkScope not_stopped(nullptr);
       try {
         writeIndex();
       } catch (const std::exception&) {
@@ -198,8 +199,10 @@ class SeriesWriter {
       record.own = rangesOf(volumes);
       addToRange(record.own);
       record.stored = ranges_;
-      writer.push(
-          [this, volumes = std::move(volumes), record = std::move(record)] { write(volumes, record); });
+      writer.push([this, volumes = std::move(volumes), record = std::move(record), work = currentWork()] {
+        const WorkScope scope(work);  // a large file is not written to its end
+        write(volumes, record);
+      });
       tell("computing", found + ++computed);
     }
     writer.finish();

@@ -100,7 +100,7 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
   bool is_complete = false;
   {
     const gdal::Dataset copy(
-        GDALCreateCopy(cog, unfinished.temporary().c_str(), dataset.get(), TRUE, options, nullptr, nullptr));
+        GDALCreateCopy(cog, unfinished.temporary().c_str(), dataset.get(), TRUE, options, goesOn, nullptr));
     is_complete = copy != nullptr;
   }
   if (!is_complete || messages.hasFailure()) failWriting(messages, file);

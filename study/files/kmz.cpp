@@ -89,6 +89,7 @@ Overlay overlayOf(const MapGrid& grid, const Map& map, const render::Legend& leg
   for (std::string& text : texts) arguments.push_back(text.data());
   arguments.push_back(nullptr);
   GDALWarpAppOptions* const options = GDALWarpAppOptionsNew(arguments.data(), nullptr);
+  GDALWarpAppOptionsSetProgress(options, goesOn, nullptr);
   GDALDatasetH source = raster.get();
   const gdal::Dataset warped(GDALWarp("", nullptr, 1, &source, options, nullptr));
   GDALWarpAppOptionsFree(options);

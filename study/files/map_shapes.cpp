@@ -104,7 +104,7 @@ std::map<int, gdal::Geometry> outlinesOf(const MapGrid& grid, std::vector<std::i
   const int field = outlines.addField("value", OFTInteger);
   outlines.check(GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height, numbers.data(), grid.width,
                               grid.height, GDT_Int32, 0, 0));
-  outlines.check(GDALPolygonize(band, nullptr, outlines.get(), field, nullptr, nullptr, nullptr));
+  outlines.check(GDALPolygonize(band, nullptr, outlines.get(), field, nullptr, goesOn, nullptr));
   std::map<int, gdal::Geometry> by_number;
   outlines.rewind();
   while (const gdal::Feature feature = outlines.next()) {
@@ -160,7 +160,7 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
   if (!levels.empty()) {
     const std::string field = fmt::format("ELEV_FIELD={}", level_field);
     const char* const options[] = {fixed.c_str(), field.c_str(), "NODATA=nan", nullptr};
-    lines.check(GDALContourGenerateEx(band, lines.get(), options, nullptr, nullptr));
+    lines.check(GDALContourGenerateEx(band, lines.get(), options, goesOn, nullptr));
     lines.rewind();
     while (const gdal::Feature feature = lines.next()) {
       const double level = levels[nearestLevel(OGR_F_GetFieldAsDouble(feature.get(), level_field))];
@@ -173,7 +173,7 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
   }
   const std::string field = fmt::format("ELEV_FIELD_MAX={}", max_field);
   const char* const options[] = {fixed.c_str(), field.c_str(), "POLYGONIZE=YES", "NODATA=nan", nullptr};
-  bands.check(GDALContourGenerateEx(band, bands.get(), options, nullptr, nullptr));
+  bands.check(GDALContourGenerateEx(band, bands.get(), options, goesOn, nullptr));
   const Range range = rangeOf(map);
   const render::Legend legend = legendOf(map);
   bands.rewind();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "emscape/base/work.h"
+
 namespace emscape::study {
 namespace {
 
@@ -44,6 +46,7 @@ std::vector<GridLine> contourLines(const std::vector<float>& values, int width, 
                                    float floor) {
   Joints joints;
   for (int j = 0; j + 1 < height; ++j) {
+    checkpoint();
     for (int i = 0; i + 1 < width; ++i) {
       const Side n = static_cast<Side>(j) * width + i;
       // Around the cell: corners, and the sides from each to the next.

@@ -7,6 +7,7 @@
 
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 
 namespace emscape::study {
 GDALDriverH driverOf(const char* name) {
@@ -18,11 +19,16 @@ GDALDriverH driverOf(const char* name) {
 
 void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
   const int cause = errno;
+  checkpoint();
   std::string text = messages.explain("cannot be written");
   // GDAL does not always say why.
   const bool is_limit = cause == EMFILE || cause == ENFILE || cause == ENOSPC || cause == EDQUOT;
   if (!messages.hasFailure() && is_limit) text += ": " + std::generic_category().message(cause);
   throw Error(ErrorCode::other, file.string() + ": " + text);
+}
+
+int goesOn(double /*done*/, const char* /*message*/, void* /*data*/) {
+  return currentWork() == nullptr || !currentWork()->isStopped() ? TRUE : FALSE;
 }
 
 gdal::Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file) {

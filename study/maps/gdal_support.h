@@ -14,8 +14,11 @@ namespace emscape::study {
 /// @throws Error (other) if GDAL was built without it
 GDALDriverH driverOf(const char* name);
 
-/// @throws Error (other) that names the file and GDAL's reason
+/// @throws Error (other) that names the file and GDAL's reason; Stopped
 [[noreturn]] void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file);
+
+/// For long calls of GDAL: they end as failed once the work is stopped, and failWriting() throws Stopped.
+int goesOn(double done, const char* message, void* data);
 
 /// Ending of the file in which GDAL stores what a format does not support.
 constexpr const char* kAuxiliary = ".aux.xml";

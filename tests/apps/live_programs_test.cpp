@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -58,6 +59,22 @@ TEST(LivePrograms, AnExerciseOfOneProgramIsTheFieldOfTheOther) {
   EXPECT_EQ(last["lost"], 0);
   EXPECT_EQ(run({"validate", folder / "now/live.yaml"}).status, 0);
   EXPECT_EQ(run({"info", folder / "now/live.vdb"}).status, 0);
+  EXPECT_EQ(run({"import", record, "-o", folder / "again.yaml"}).status, 0);
+}
+
+TEST(LivePrograms, SLOW_GoOnRecordingWhileTheFieldCannotBeWritten) {
+  const TemporaryFolder folder;
+  const std::string port = freePort(), record = folder / "seen.pcap";
+  std::filesystem::create_directories(folder / "now/live.vdb");
+  RunningProgram live({"live", "--dis", port, "--base", quick(), "--json", "--duration", "7", "-o",
+                       folder / "now", "--record", record});
+  pause(1500);
+  EXPECT_EQ(run({"play", shippedScenario("jamming.yaml"), "--dis-out", port, "--set", "duration_s=2"}).status,
+            0);
+  const ProgramResult result = live.wait();
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, testing::HasSubstr("live.vdb"));
+  EXPECT_THAT(linesOf(result.out).back()["trouble"].get<std::string>(), testing::HasSubstr("live.vdb"));
   EXPECT_EQ(run({"import", record, "-o", folder / "again.yaml"}).status, 0);
 }
 
