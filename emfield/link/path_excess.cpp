@@ -98,7 +98,7 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
                loss_db);
     excess.clutter_db += loss_db;
     constexpr float kGrazing_db = 6;
-    if (!terminal.is_larger && !model.on_smooth_surface && bare_db > kGrazing_db && std::isfinite(bare_db)) {
+    if (!terminal.is_larger && !model.on_smooth_surface && excess.loss_db > kGrazing_db && std::isfinite(bare_db)) {
       excess.warnings.push_back(fmt::format(
           "emitter '{}': terrain costs {:.1f} dB on this path, and {:.1f} dB of P.2108-1 are added to it: on "
           "measured paths that terrain blocks, such sums were 9 to 20 dB too high in the mean; 'ground: "
