@@ -164,7 +164,7 @@ TEST_P(ClutterInFields, AlongPathsAndAtTheirEndsEqualsThatOfPaths) {
   const scenario::TerrainPtr grounds[] = {
       std::make_shared<GroundWithTrees>(false), std::make_shared<GroundWithTrees>(true),
       std::make_shared<MadeTerrain>(45, 5, 0.2, [](double, double north_deg) {
-        return north_deg > 0.115 && north_deg < 0.125 ? 160.0 : 100.0;
+        return north_deg > 0.122 && north_deg < 0.128 ? 160.0 : 100.0;
       })};
   for (const scenario::TerrainPtr& ground : grounds) {
     for (const PropagationModel model :
