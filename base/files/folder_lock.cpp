@@ -91,13 +91,11 @@ bool FolderLock::lock(std::string& holder) {
       std::this_thread::sleep_for(kBetweenAttempts);
       continue;
     }
-    // An empty file that could be locked is of a process that ended before it wrote its name, or could not.
-    const bool is_abandoned = cause == 0 && content.empty();
-    if (!is_new && !isLock(content) && !is_abandoned) {
-      failWriting(file_, content.empty()
-                             ? "it is empty and files cannot be locked here: if no other process writes this "
-                               "folder, remove it"
-                             : "a file of that name exists that is no lock of emscape; use another folder");
+    if (!is_new && !isLock(content)) {
+      failWriting(file_,
+                  "a file of that name exists that is no lock of emscape; " +
+                      std::string(content.empty() ? "it is empty: if a killed process has left it, remove it"
+                                                  : "use another folder"));
     }
     descriptor_ = std::move(found);
   }

@@ -68,17 +68,7 @@ TEST_P(LockWithoutFlock, LeavesAFileThatIsNoLock) {
 TEST_P(LockWithoutFlock, NamesAnEmptyFileThatMayBeALock) {
   folder_.write("a.lock", "");
   EXPECT_THAT(test::errorOf([&] { FolderLock(folder_.path(), "a.lock"); }, ErrorCode::other),
-              HasSubstr("if no other process writes this folder, remove it"));
-}
-
-TEST(FolderLock, TakesTheEmptyFileOfAProcessThatCouldNotWriteItsName) {
-  const test::TemporaryFolder folder;
-  folder.write("a.lock", "");
-  {
-    const FolderLock lock(folder.path(), "a.lock");
-    EXPECT_THAT(test::readFile(folder / "a.lock"), HasSubstr("lock of emscape, process "));
-  }
-  EXPECT_THAT(folder.files(), IsEmpty());
+              HasSubstr("if a killed process has left it, remove it"));
 }
 
 /// A lock that could not be written would block its folder once its process is killed.

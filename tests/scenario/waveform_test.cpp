@@ -136,7 +136,8 @@ TEST(Waveform, PulsesOfADopplerFilterAreNotIntegratedAgain) {
   // 64 hits: one coherent sum of 64 pulses, four of 16, or 62 outputs of a canceller of three.
   const std::string coherent_64 = ", processing_gain_db: 18";
   EXPECT_EQ(filtered(coherent_64, "{kind: pulse_doppler, pulses: 64}"), std::make_pair(1, std::string()));
-  EXPECT_EQ(filtered("", "{kind: pulse_doppler, pulses: 16}"), std::make_pair(4, std::string()));
+  EXPECT_EQ(filtered(", processing_gain_db: 9", "{kind: pulse_doppler, pulses: 16}"),
+            std::make_pair(4, std::string()));
   EXPECT_EQ(filtered("", "{kind: canceller, pulses: 3}"), std::make_pair(62, std::string()));
   EXPECT_EQ(filtered(", pulses: 4, processing_gain_db: 9", "{kind: pulse_doppler, pulses: 16}").second, "");
   EXPECT_THAT(filtered(", pulses: 64, processing_gain_db: 9", "{kind: pulse_doppler, pulses: 16}").second,
