@@ -180,7 +180,8 @@ TEST_P(ClutterInFields, AlongPathsAndAtTheirEndsEqualsThatOfPaths) {
         const std::vector<float> field = excessOfSurface(scenario, ground, latitudes, 3, GetParam());
         for (std::size_t i = 0; i < latitudes.size(); ++i) {
           const PathBudget budget = budgetTo(scenario, *ground, latitudes[i], 103);
-          const double expected_db = std::max(budget.find("power_density_dbwm2")->value, -300.0);  // the floor
+          const double expected_db =
+              std::max(budget.find("power_density_dbwm2")->value, -300.0);  // the floor
           EXPECT_NEAR(double(field[i]), expected_db, 0.1)
               << toString(model) << " at " << latitudes[i] << ", terminal clutter: " << terminal;
           EXPECT_EQ(budget.find("terminal_clutter_db") != nullptr, with_terminal);
