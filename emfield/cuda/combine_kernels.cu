@@ -85,11 +85,6 @@ __device__ void fill(const EmitterBeam& beam, std::size_t column, long long firs
 constexpr int kWarp = 32;
 constexpr int kWarps = 8;
 
-/// Number of blocks one above another.
-__host__ __device__ int levelsOf(const Dims& dims, int layers) {
-  return (dims.z + layers * kWarps - 1) / (layers * kWarps);
-}
-
 /// A thread processes kLayers layers of a column.
 /// @tparam kSecond     the channel has a second accumulator
 /// @tparam kReflected  some members have weighted reflected rays, and some of the channels may be missing; a
@@ -98,12 +93,9 @@ template <int kChannels, int kLayers, bool kSecond, bool kReflected>
 __global__ void __launch_bounds__(kWarp* kWarps)
     combineKernel(const __grid_constant__ Launch<kChannels> launch) {
   const int columns = launch.dims.x * launch.dims.y;
-  // Blocks one above another follow each other: they read the same columns' numbers, which of many emitters
-  // are larger than the second-level cache.
-  const int levels = levelsOf(launch.dims, kLayers), block = static_cast<int>(blockIdx.x);
-  const int column = block / levels * kWarp + static_cast<int>(threadIdx.x);
+  const int column = static_cast<int>(blockIdx.x) * kWarp + static_cast<int>(threadIdx.x);
   if (column >= columns) return;
-  const int begin = (block % levels * kWarps + static_cast<int>(threadIdx.y)) * kLayers;
+  const int begin = (static_cast<int>(blockIdx.y) * kWarps + static_cast<int>(threadIdx.y)) * kLayers;
   if (begin >= launch.dims.z) return;
   if (launch.first_valid_k != nullptr && launch.first_valid_k[column] >= begin + kLayers) return;
 
@@ -204,8 +196,9 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
     launch.accumulators[c] = c < count ? task.accumulators[channels[c]] : Accumulator{};
     launch.initial[c] = c < count ? task.initial[channels[c]] : ConstAccumulator{};
   }
-  const auto blocks = static_cast<unsigned>((task.dims.x * task.dims.y + kWarp - 1) / kWarp) *
-                      static_cast<unsigned>(levelsOf(task.dims, kLayers));
+  constexpr int kBlockLayers = kLayers * kWarps;
+  const dim3 blocks(static_cast<unsigned>((task.dims.x * task.dims.y + kWarp - 1) / kWarp),
+                    static_cast<unsigned>((task.dims.z + kBlockLayers - 1) / kBlockLayers));
   const auto run = [&] {
     combineKernel<kChannels, kLayers, kSecond, kReflected>
         <<<blocks, dim3(kWarp, kWarps), 0, stream>>>(launch);

@@ -27,7 +27,8 @@ namespace emscape::emfield {
 
 /// A cell of the map: the sum over the surface of cross section over range^4, per radian of azimuth and in
 /// one range cell of the radar, with the two-way loss of the atmosphere (1 / (m2 rad)); and the sine of the
-/// ray's elevation, weighted by it, of cells without an echo that of a neighbour.
+/// elevation of the surface that echoes, seen from the middle of the cell; of cells without an echo that of a
+/// neighbour.
 struct ClutterCell {
   float echo = 0;
   float sine = 0;
@@ -155,7 +156,7 @@ struct ClutterMapTask {
     float sine = row[first].sine / row[first].echo;
     for (int n = 0; n < grid.ranges; ++n) {
       if (row[n].echo > 0) sine = row[n].sine / row[n].echo;
-      row[n].sine = sine;
+      row[n].sine = sine > -1 ? sine : -1.0f;
     }
   }
 
@@ -194,7 +195,8 @@ struct ClutterMapTask {
                           std::pow(10.0, -0.2 * static_cast<double>(air_db_per_m) * range_m) *
                           static_cast<double>(grid.part_of_step);
       row[n].echo += static_cast<float>(echo);
-      row[n].sine -= static_cast<float>(echo * depth_m / range_m);  // its mean is taken at the end
+      // At the middle of the cell, which is where it is interpolated; its mean is taken at the end.
+      row[n].sine -= static_cast<float>(echo * depth_m * per_m / (n + 0.5));
     }
   }
 };

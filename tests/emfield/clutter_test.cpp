@@ -389,7 +389,7 @@ TEST_P(Clutter, OfLaterTripsIsSeenByTheBeamTowardsItsOwnSurface) {
     };
   };
   const auto single = clutterAt(1000), folded = clutterAt(kSpeedOfLight / 2 / 12e3);
-  for (const double range_m : {2e3, 3e3, 5e3, 8e3, 11e3}) {
+  for (const double range_m : {2e3, 3e3, 8e3, 11e3}) {
     double sum = 0;
     for (double trip_m = range_m; trip_m < 40e3; trip_m += 12e3) sum += single(trip_m);
     for (const double same_m : {range_m, range_m + 12e3})
@@ -401,7 +401,7 @@ TEST_P(Clutter, OfLaterTripsIsSeenByTheBeamTowardsItsOwnSurface) {
 TEST_P(Clutter, IsEclipsedAsTheEchoThatItArrivesWith) {
   scenario::Emitter radar = cluttered(trackingRadar());
   radar.waveform->pulse_width_s = 10e-6;  // nothing is heard whole before 1.5 km
-  radar.clutter->sea_state = 6;
+  radar.clutter->land_gamma_db = 20;
   const auto probabilities = [&](bool limits) {
     radar.waveform->limits_detection = limits;
     return field(lineWith(radar), "detection_probability");
