@@ -333,6 +333,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
     } else if (const auto* itm = std::get_if<propagation::ItmExcess>(&work.model->model)) {
       task.model = itm->diffraction;
       task.ground.is_raised = work.model->is_raised && work.ground.terrain.hasCover();
+      task.ground.has_clutter = work.model->has_clutter;
     } else if (isDiffraction(*work.model)) {
       task = {std::get<DiffractionExcess>(work.model->model),
               work.model->air,
@@ -341,6 +342,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
               work.excess.out,
               work.model->terminal};
       task.ground.is_raised = work.model->is_raised && work.ground.terrain.hasCover();
+      task.ground.has_clutter = work.model->has_clutter;
       task.at_crossings = true;
       if (!task.ground.is_raised) task.highest_msl_m = highest_post_m_;
     } else {

@@ -172,6 +172,7 @@ void fillExcess(const EmitterExcess& excess, const Station& station, const Exces
         if constexpr (!hasOwnKernel<Model>) {
           ExcessTask<Model> task{m, excess.air, station, grid, ground, excess.terminal};
           task.ground.is_raised = excess.is_raised && ground.terrain.hasCover();
+          task.ground.has_clutter = excess.has_clutter;
           launchExcess(task, to, ColumnMemory(scratch, task.posts(), grid.layers), stream);
         }
       },

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "emfield/excess/emitter_excess.h"
 #include "propagation/registry/model_info.h"
 
@@ -27,6 +29,16 @@ double constantClutter_m(const propagation::ModelSettings& settings) {
 bool usesClutterMap(const propagation::ModelSettings& settings) {
   return propagation::isRaisedByClutter(settings) || settings.model == PropagationModel::p1812 ||
          settings.model == PropagationModel::p452;
+}
+
+bool hasClutter(const propagation::ModelSettings& settings, const scenario::Terrain* terrain) {
+  if (constantClutter_m(settings) > 0) return true;
+  if (terrain == nullptr || !usesClutterMap(settings)) return false;
+  const scenario::TerrainView view = terrain->view();
+  const auto isHigh = [](const scenario::CoverValues& of_class) { return of_class.clutter_height_m > 0; };
+  return view.surface_count > 0 ||
+         (view.cover.isSet() &&
+          std::any_of(view.cover.classes, view.cover.classes + view.cover.class_count, isHigh));
 }
 
 std::string clutterText(const scenario::Scenario& scenario, const scenario::Emitter& emitter) {

@@ -11,6 +11,10 @@ namespace emscape::emfield {
 /// True for models that read clutter heights along their paths: raised profiles, or their own clutter.
 bool usesClutterMap(const propagation::ModelSettings& settings);
 
+/// True if paths have clutter heights: of a map, or one height along all of the path.
+/// @param terrain  null: none
+bool hasClutter(const propagation::ModelSettings& settings, const scenario::Terrain* terrain);
+
 /// For the line "clutter: ..." of reports; "none" without any.
 std::string clutterText(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
 /// The same for all emitters of a scenario, by name where they differ.

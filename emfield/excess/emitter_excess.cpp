@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "emfield/columns/foot_inverse.h"
+#include "emfield/excess/clutter_text.h"
 #include "emfield/excess/elevation_cut.h"
 #include "emfield/excess/radials.h"
 #include "emfield/ground/ground_posts.h"
@@ -191,6 +192,7 @@ EmitterExcess planExcess(const Scenario& scenario, const Emitter& emitter, const
                         nullptr, points ? &*points : nullptr);
     excess.terminal = terminalClutter(scenario, emitter, station, terrain);
     excess.is_raised = propagation::isRaisedByClutter(emitter.propagation);
+    excess.has_clutter = hasClutter(emitter.propagation, terrain);
     return excess;
   }
   inModel(emitter, [&] {

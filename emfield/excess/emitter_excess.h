@@ -27,7 +27,8 @@ struct EmitterExcess {
   propagation::ExcessModel model;
   propagation::AirLoss air;
   propagation::TerminalClutter terminal;
-  bool is_raised = false;  ///< see propagation::isRaisedByClutter
+  bool is_raised = false;    ///< see propagation::isRaisedByClutter
+  bool has_clutter = false;  ///< see hasClutter() and GroundPosts
   /// The pending march for the model's tables; null if they are complete, or if there are none.
   std::shared_ptr<propagation::FieldMarch> march;
 

@@ -171,6 +171,7 @@ unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, cons
         using Model = std::decay_t<decltype(m)>;
         ExcessTask<Model> task{m, excess.air, station, grid, ground, excess.terminal};
         task.ground.is_raised = excess.is_raised && ground.terrain.hasCover();
+        task.ground.has_clutter = excess.has_clutter;
         const bool is_bounded =
             bounds != nullptr && (!task.ground.is_raised || bounds->highestCover_m() != nullptr);
         return fill(task, is_bounded ? bounds : nullptr, out);

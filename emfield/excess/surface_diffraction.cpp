@@ -55,6 +55,7 @@ struct Posts {
   DiffractionModel<float> model;
   const double* exact_range_m;
   const SectorPosts* of_sectors;
+  const GroundPosts* ground;
   int near_count;                             ///< GroundPosts
   const float *first_m, *last_m;              ///< per block: ranges of its obstacles
   const float *group_first_m, *group_last_m;  ///< per group
@@ -73,7 +74,11 @@ struct PathMemory {
   std::vector<int> raised_for;           ///< the same for its clutter
   std::vector<int> columns;              ///< per block: number of the posts on columns
   std::vector<unsigned> doubtful;        ///< per block: posts whose heights are upper bounds, as bits
-  std::vector<float> rx_m;               ///< heights of the receivers, as inputs of the model
+  /// The posts for clutter (GroundPosts) of the path for which they were read.
+  std::vector<float> clutter_m, clutter_height_m;
+  std::vector<char> clutter_doubtful;
+  int clutter_read_for = 0;
+  std::vector<float> rx_m;  ///< heights of the receivers, as inputs of the model
   std::vector<int> rx_block,
       nu_block;  ///< per height: the blocks that determined the loss of the previous path
   int tx_block = 0;
@@ -102,6 +107,7 @@ struct Path {
   float aside;     ///< in the sector, -1..1
   float chord_m;   ///< length of the chords of its profile
   float beside_m;  ///< largest distance from its profile's path
+  double exact_distance_m;
 };
 
 /// The crossings of a short straight part of a path with columns or rows.
@@ -138,6 +144,7 @@ class Search {
   /// @param most  start of the search; receives the maximum
   template <class BoundOf, class ValueOf>
   void operator()(const BoundOf& boundOf, const ValueOf& valueOf, Maximum& most) const {
+    if (posts_.cover != nullptr) visitClutter(valueOf, most);
     const int guess = std::min(most.block, path_.blocks - 1);
     const float farthest_m = path_.last_m;
     const auto clipped = [farthest_m](float last_m) { return last_m < farthest_m ? last_m : farthest_m; };
@@ -225,6 +232,64 @@ class Search {
       is_bound = is_bound || valueOf(range_m[i], height_m[i]) >= largest - kRounding * std::fabs(largest);
     }
     most = {largest, block, is_bound};
+  }
+
+  /// The posts for clutter, first of all: they often decide.
+  template <class ValueOf>
+  void visitClutter(const ValueOf& valueOf, Maximum& most) const {
+    if (memory_.clutter_read_for != path_.number) readClutter();
+    for (std::size_t i = 0; i < memory_.clutter_m.size(); ++i) {
+      const float value = valueOf(memory_.clutter_m[i], memory_.clutter_height_m[i]);
+      if (value > most.value) most = {value, most.block, memory_.clutter_doubtful[i] != 0};
+    }
+  }
+
+  /// Reads the posts for clutter, by the blocks in which they are.
+  void readClutter() const {
+    constexpr int kAtOnce = kOfBlock - kCrossings;
+    memory_.clutter_read_for = path_.number;
+    memory_.clutter_m.clear();
+    memory_.clutter_height_m.clear();
+    memory_.clutter_doubtful.clear();
+    const GroundPosts& ground = *posts_.ground;
+    float range_m[kOfBlock], height_m[kOfBlock];
+    int block = 0, count = 0;
+    const auto raiseAll = [&] {
+      if (count == 0) return;
+      for (int i = 0; i < kOfBlock; ++i) {
+        if (i >= kCrossings && i < kCrossings + count) continue;
+        range_m[i] = posts_.first_m[block];
+        height_m[i] = -HUGE_VALF;
+      }
+      const unsigned doubtful = posts_.cover->raise(lineOf(block), 0, path_.distance_m, path_.beside_m,
+                                                    bounds_.base_msl_m, range_m, height_m);
+      for (int i = kCrossings; i < kCrossings + count; ++i) {
+        memory_.is_left = memory_.is_left || std::isnan(height_m[i]);
+        memory_.clutter_m.push_back(range_m[i]);
+        memory_.clutter_height_m.push_back(height_m[i]);
+        memory_.clutter_doubtful.push_back((doubtful >> i & 1) != 0);
+      }
+      count = 0;
+    };
+    for (int n = 0; n < ground.clutterPosts(); ++n) {
+      const double at_m = ground.clutterPost_m(n, path_.exact_distance_m);
+      if (!isClutterAt(at_m, path_.exact_distance_m)) continue;
+      const auto here_m = static_cast<float>(at_m);
+      int of_post = std::min(ground.lastBefore(at_m) / kBlock, path_.blocks - 1);
+      if (of_post + 1 < path_.blocks && here_m > posts_.last_m[of_post]) ++of_post;
+      if (of_post != block || count == kAtOnce) raiseAll();
+      block = of_post;
+      const SectorChord& chord = terrain_.chord(block / posts_.of_sectors->blocksPerChord());
+      const float first = posts_.of_sectors->firstPart()[block];
+      const float part =
+          first + (here_m - posts_.first_m[block]) / lengthOf_m(block) * (lastPartOf(block) - first);
+      range_m[kCrossings + count] = here_m;
+      height_m[kCrossings + count++] = bilinearHeight(chord.corner_msl_m, terrain_.rowPosts(),
+                                                      alongPath(chord.column, path_.aside).at(part),
+                                                      alongPath(chord.row, path_.aside).at(part)) -
+                                       bounds_.base_msl_m;
+    }
+    raiseAll();
   }
 
   float lengthOf_m(int block) const {
@@ -574,6 +639,7 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
   Path path{};
   for (const SectorPath* to = sector.begin; to < sector.end; ++to) {
     path.distance_m = static_cast<float>(to->distance_m);
+    path.exact_distance_m = to->distance_m;
     path.before = sector.task.ground.lastBefore(to->distance_m);
     path.last_m = path.distance_m * (1 - 3e-7f);
     path.aside = to->aside_rad * per_rad;
@@ -640,6 +706,7 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
   const Posts posts{task.model.model,
                     task.ground.ranges_m,
                     &sector_posts,
+                    &task.ground,
                     task.ground.near_count,
                     first_m.data(),
                     last_m.data(),
@@ -681,6 +748,7 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
       setBounds(posts, terrain, task.model.tx_msl_m, of_sector);
       memory.read_for.assign(blocks, 0);
       memory.raised_for.assign(blocks, 0);
+      memory.clutter_read_for = 0;
       fillSector({task, sectors.begin(sector), sectors.end(sector), sectors.halfWidth_rad(sector), out,
                   is_left.data()},
                  posts, terrain, of_sector, memory);

@@ -41,9 +41,20 @@ class ColumnPosts {
     const int regular = ground_.lastBefore(path_.distance_m) + 1;
     const bool is_smooth = ground_.is_smooth, with_beginnings = regular_chords_ != ~0ull;
     const Chords of_path = chords();
+    ClutterPosts more(ground_, path_.distance_m);
     for (int n = 0; n < of_path.count; ++n) {
       const double begin_m = n * of_path.length_m;
       TerrainChord chord;
+      const auto addClutter = [&](double end_m) {
+        for (; more.next_m < end_m; more.advance(ground_, path_.distance_m))
+          visit(PathPost{fminf(static_cast<float>(more.next_m), farthest_m()),
+                         is_smooth ? 0 : heightAt(chord, more.next_m)});
+      };
+      const auto visitInOrder = [&](const PathPost& post) {
+        if (kOrdered) addClutter(static_cast<double>(post.range_m));
+        visit(post);
+      };
+      const double end_of_chord_m = n + 1 < of_path.count ? begin_m + of_path.length_m : HUGE_VAL;
       if (!is_smooth) prepare(station_, ground_, path_, n, chord);
       int first = n == 0 ? 1 : ground_.lastBefore(begin_m) + 1;
       int end = n + 1 < of_path.count ? ground_.lastBefore(begin_m + of_path.length_m) + 1 : regular;
@@ -54,22 +65,23 @@ class ColumnPosts {
         const int others_end = n == 0 ? larger(smaller(ground_.near_count, smaller(end, 128)), 1) : first;
         const double* const others_m = n == 0 ? ground_.ranges_m + 1 : &begin_m;
         const int others = n == 0 ? others_end - 1 : 1;
-        const Found found = kOrdered ? eachInOrder(chord, begin_m, of_path.length_m, others_m, others, visit)
-                                     : eachCrossing(chord, begin_m, of_path.length_m, nearest_m, visit);
+        const Found found =
+            kOrdered ? eachInOrder(chord, begin_m, of_path.length_m, others_m, others, visitInOrder)
+                     : eachCrossing(chord, begin_m, of_path.length_m, nearest_m, visit);
         if (found != Found::all) regular_chords_ |= bitOf(n);
         if (found == Found::void_post) return false;
         with_crossings = found == Found::all;
-        if (with_crossings && kOrdered) continue;
-        if (with_crossings) end = others_end;
+        if (with_crossings) end = kOrdered ? first : others_end;
       }
       if (!with_crossings && beginning > 0 && first < end && ground_.ranges_m[first] <= begin_m) ++first;
       EMSCAPE_UNROLL_BY(1)
-      for (int i = first - beginning; i < end; ++i) {
+      for (int i = first - (with_crossings && kOrdered ? 0 : beginning); i < end; ++i) {
         const double range_m = i < first ? begin_m : ground_.ranges_m[i];
         if (with_crossings && range_m < static_cast<double>(nearest_m)) continue;
-        visit(PathPost{fminf(static_cast<float>(range_m), farthest_m()),
-                       is_smooth ? 0 : heightAt(chord, range_m)});
+        visitInOrder(PathPost{fminf(static_cast<float>(range_m), farthest_m()),
+                              is_smooth ? 0 : heightAt(chord, range_m)});
       }
+      addClutter(end_of_chord_m);
     }
     return true;
   }
@@ -91,6 +103,9 @@ class ColumnPosts {
       if (before > 0) add(ground_.ranges_m[before]);
       if (before + 1 < end) add(ground_.ranges_m[before + 1]);
     };
+    for (ClutterPosts more(ground_, path_.distance_m); more.next_m < HUGE_VAL;
+         more.advance(ground_, path_.distance_m))
+      add(more.next_m);
     if (ground_.is_smooth || regular_chords_ == ~0ull) {
       addRegular(regular);
       return found;
@@ -123,6 +138,21 @@ class ColumnPosts {
 
  private:
   enum class Found { all, void_post, too_many };
+  /// The ranges of the posts for clutter, one after another; infinite after the last one.
+  struct ClutterPosts {
+    int n = -1;
+    double next_m = HUGE_VAL;
+
+    EMSCAPE_HD ClutterPosts(const GroundPosts& ground, double path_m) { advance(ground, path_m); }
+    EMSCAPE_HD void advance(const GroundPosts& ground, double path_m) {
+      for (next_m = HUGE_VAL; ++n < ground.clutterPosts();) {
+        const double range_m = ground.clutterPost_m(n, path_m);
+        if (!isClutterAt(range_m, path_m)) continue;
+        next_m = range_m;
+        return;
+      }
+    }
+  };
   struct Chords {
     int count;
     double length_m;
@@ -159,7 +189,7 @@ class ColumnPosts {
   }
   EMSCAPE_NOINLINE EMSCAPE_HD float clutterAt(const TerrainChord& chord, double range_m,
                                               float ground_msl_m) const {
-    if (!(range_m > kClutterFree_m && range_m < path_.distance_m - kClutterFree_m)) return 0;
+    if (!isClutterAt(range_m, path_.distance_m)) return 0;
     const double part = (range_m - chord.in_raster.begin_m) * chord.in_raster.per_m;
     const float cover_m = ground_.terrain.coverAt(chord.position.latitude_rad.at(part),
                                                   chord.position.longitude_rad.at(part), ground_msl_m);

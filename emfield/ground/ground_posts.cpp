@@ -35,6 +35,13 @@ GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<doub
         static_cast<int>(std::lower_bound(ranges_m.begin(), ranges_m.end(), near_m) - ranges_m.begin());
     ground.crossings_per_m = kMaxPerPost / terrain->postSpacing_m();
   }
+  constexpr double kMirrored_m = 500, kMirrored = 3;  // spacings
+  const auto postAt = [&](double range_m) {
+    return static_cast<int>(std::lower_bound(ranges_m.begin(), ranges_m.end(), range_m) - ranges_m.begin());
+  };
+  ground.clutter_first = std::min(postAt(kClutterFree_m), ground.range_count - 1);
+  ground.clutter_end = std::clamp(postAt(std::min(kMirrored_m, kMirrored * postSpacing_m(terrain))),
+                                  ground.clutter_first, ground.clutter_first + kMostClutterPosts - 2);
   return ground;
 }
 

@@ -27,6 +27,16 @@ double postSpacing_m(const scenario::Terrain* terrain);
 /// half the post spacing. Shorter lists are prefixes of longer ones.
 std::vector<double> postRanges(double farthest_m, double post_spacing_m);
 
+/// Distance (m) from the ends of a path within which its profile is that of the bare ground: the clutter
+/// around the antennas is not an edge on the path. @see P.452-18, section 4.2, which has the same
+constexpr double kClutterFree_m = 50;
+
+/// True where clutter is added to a profile: from exactly kClutterFree_m of each end on.
+EMSCAPE_HD inline bool isClutterAt(double range_m, double path_m) {
+  constexpr double kFrom_m = kClutterFree_m - 1e-3;  // but for rounding
+  return (range_m >= kFrom_m) & (path_m - range_m >= kFrom_m);
+}
+
 /// The ground as plain data, for loops on host and device.
 struct GroundPosts {
   scenario::TerrainView terrain;
@@ -38,6 +48,19 @@ struct GroundPosts {
   /// Chords with more crossings than this have regular posts; see maxCrossings().
   double crossings_per_m = 0;
   bool is_raised = false;  ///< profiles are raised by the clutter of the land cover; see raiseByClutter()
+  /// Profiles have posts where clutter begins, and before the receivers as many as beyond the emitter, so
+  /// that a path and the path back meet the same clutter; see clutterPost_m().
+  bool has_clutter = false;
+  int clutter_first = 0, clutter_end = 0;  ///< the regular posts that are mirrored for that
+
+  /// Number of the posts for clutter of a long path.
+  EMSCAPE_HD int clutterPosts() const { return has_clutter ? clutter_end - clutter_first + 2 : 0; }
+  /// Range of one of them, ascending but for the first of a short path; not where clutter is not added: none.
+  EMSCAPE_HD double clutterPost_m(int n, double path_m) const {
+    const int mirrored = clutter_end - n;
+    return n == 0 ? kClutterFree_m
+                  : path_m - (mirrored >= clutter_first ? ranges_m[mirrored] : kClutterFree_m);
+  }
 
   /// Largest number of crossings of a chord of some length that are read.
   EMSCAPE_HD int maxCrossings(double chord_m) const {
@@ -60,7 +83,7 @@ struct GroundPosts {
 /// Largest number of posts of a profile within the ranges of regular posts, with one at the receivers. Does
 /// not read the ranges.
 EMSCAPE_HD inline int maxPosts(const Station& station, const GroundPosts& ground, bool at_crossings) {
-  const int regular = ground.range_count + 1;
+  const int regular = ground.range_count + 1 + ground.clutterPosts();
   if (!at_crossings || !(ground.crossings_per_m > 0)) return regular;
   // Of each chord either the crossings or the regular posts, which are at least 2/3 of the most crossings.
   const double farthest_m = 1.5 * ground.range_count / ground.crossings_per_m;
@@ -156,17 +179,16 @@ struct PostReader {
   }
 };
 
-/// Distance (m) from the ends of a path within which its profile is that of the bare ground: the clutter
-/// around the antennas is not an edge on the path. @see P.452-18, section 4.2, which has the same
-constexpr double kClutterFree_m = 50;
+/// Most posts for clutter of any path.
+constexpr int kMostClutterPosts = 40;
 
 /// Adds the clutter's height to the posts of a profile, except near its ends.
 /// @param cover_m  see TerrainProfile
 EMSCAPE_HD inline void raiseByClutter(const double* range_m, const float* cover_m, int count,
                                       float* ground_msl_m) {
-  const double last_m = range_m[count - 1] - kClutterFree_m;
+  const double path_m = range_m[count - 1];
   for (int i = 0; i < count; ++i) {
-    const bool is_between = (range_m[i] > kClutterFree_m) & (range_m[i] < last_m);
+    const bool is_between = isClutterAt(range_m[i], path_m);
     const float raise_m = cover_m[i] > 0 ? cover_m[i] : 0.0f;  // not if it is NaN
     ground_msl_m[i] += is_between ? raise_m : 0.0f;
   }
@@ -177,6 +199,30 @@ EMSCAPE_HD inline float groundAt(const Station& station, const GroundPosts& grou
                                  const FastInverse& point) {
   if (ground.is_smooth) return 0;
   return TerrainWalk(station, ground.terrain, point).heightAt(point.distance_m);
+}
+
+/// Puts the posts for clutter into a profile. @return the new number of its posts
+EMSCAPE_HD inline int addClutterPosts(const Station& station, const GroundPosts& ground,
+                                      const FastInverse& path, int count, double* range_m,
+                                      float* ground_msl_m) {
+  double more_m[kMostClutterPosts];
+  float here_msl_m[kMostClutterPosts];
+  int more = 0;
+  TerrainWalk walk(station, ground.terrain, path);
+  for (int n = 0; n < ground.clutterPosts(); ++n) {
+    const double at_m = ground.clutterPost_m(n, path.distance_m);
+    if (!isClutterAt(at_m, path.distance_m)) continue;
+    more_m[more] = at_m;
+    here_msl_m[more++] = ground.is_smooth ? 0.0f : walk.heightAt(at_m);
+  }
+  const int all = count + more;
+  for (int to = all - 1, from = count - 1; more > 0; --to) {
+    const bool is_more = !(range_m[from] > more_m[more - 1]);
+    range_m[to] = is_more ? more_m[more - 1] : range_m[from];
+    ground_msl_m[to] = is_more ? here_msl_m[more - 1] : ground_msl_m[from];
+    --(is_more ? more : from);
+  }
+  return all;
 }
 
 /// The profile to a point of the ground: the posts nearer than it, and the point itself.
@@ -191,11 +237,15 @@ EMSCAPE_HD TerrainProfile readProfile(const Station& station, const GroundPosts&
     scratch.range_m[last] = point.distance_m;
     scratch.ground_msl_m[last] = ground_msl_m;
   }
-  TerrainProfile profile{scratch.range_m, scratch.ground_msl_m, last + 1};
+  int count = last + 1;
+  if (ground.has_clutter && last > 0) {
+    count = addClutterPosts(station, ground, point, count, scratch.range_m, scratch.ground_msl_m);
+  }
+  TerrainProfile profile{scratch.range_m, scratch.ground_msl_m, count};
   if (!ground.is_smooth && ground.terrain.hasCover()) {
-    read.readCover(station, ground, point, scratch.range_m, scratch.ground_msl_m, last + 1, scratch.cover_m);
+    read.readCover(station, ground, point, scratch.range_m, scratch.ground_msl_m, count, scratch.cover_m);
     profile.cover_m = scratch.cover_m;
-    if (ground.is_raised) raiseByClutter(scratch.range_m, scratch.cover_m, last + 1, scratch.ground_msl_m);
+    if (ground.is_raised) raiseByClutter(scratch.range_m, scratch.cover_m, count, scratch.ground_msl_m);
   }
   return profile;
 }

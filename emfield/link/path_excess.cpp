@@ -48,12 +48,21 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
   }
   const PathInputs inputs = pathInputs(scenario, emitter, beam, station, terrain,
                                        {profile.range_m, profile.end.height_msl_m, profile.end.height_msl_m});
-  propagation::TerrainProfile posts{profile.ranges_m.data(), profile.ground_msl_m.data(), profile.count()};
-  std::vector<float> cover_m;
-  const GroundPosts ground = groundPosts(terrain, profile.ranges_m);
+  std::vector<double> ranges_m = profile.ranges_m;
+  std::vector<float> heights_msl_m = profile.ground_msl_m, cover_m;
+  const std::vector<double> regular_m = postRanges(profile.range_m, postSpacing_m(terrain));
+  GroundPosts ground = groundPosts(terrain, regular_m);
+  const FastInverse along{profile.range_m, std::sin(profile.azimuth_rad), std::cos(profile.azimuth_rad)};
+  int count = profile.count();
+  if (hasClutter(emitter.propagation, terrain)) {
+    ground.has_clutter = true;
+    ranges_m.resize(ranges_m.size() + kMostClutterPosts);
+    heights_msl_m.resize(ranges_m.size());
+    count = addClutterPosts(station, ground, along, count, ranges_m.data(), heights_msl_m.data());
+  }
+  propagation::TerrainProfile posts{ranges_m.data(), heights_msl_m.data(), count};
   if (!ground.is_smooth && ground.terrain.hasCover()) {
-    cover_m.resize(profile.ranges_m.size());
-    const FastInverse along{profile.range_m, std::sin(profile.azimuth_rad), std::cos(profile.azimuth_rad)};
+    cover_m.resize(static_cast<std::size_t>(count));
     readCover(station, ground, along, posts.range_m, posts.height_msl_m, posts.count, cover_m.data());
     posts.cover_m = cover_m.data();
   }
@@ -70,7 +79,7 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
       return;
     }
     // The parts of the path over bare ground, and what the clutter adds to their sum.
-    std::vector<float> bare_m = cover_m, raised_msl_m = profile.ground_msl_m;
+    std::vector<float> bare_m = cover_m, raised_msl_m = heights_msl_m;
     bare(bare_m);
     propagation::TerrainProfile without = posts, with = posts;
     without.cover_m = bare_m.data();

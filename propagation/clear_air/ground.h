@@ -57,8 +57,8 @@ EMSCAPE_HD inline PathZones zonesOf(ClearAirZone setting, const TerrainProfile& 
 
 /// True if a post is within a distance of either end of a path.
 EMSCAPE_HD inline bool isNearTerminal(const TerrainProfile& profile, int post, double distance_m) {
-  const double range_m = profile.range_m[post];
-  return range_m < distance_m || profile.range_m[profile.count - 1] - range_m < distance_m;
+  const double range_m = profile.range_m[post], least_m = distance_m - 1e-3;  // but for rounding
+  return range_m < least_m || profile.range_m[profile.count - 1] - range_m < least_m;
 }
 
 /// Zone setting and clutter of the paths of an emitter.

@@ -49,7 +49,7 @@ std::vector<std::string> p1812PathWarnings(const PathInputs& inputs) {
 }
 
 P1812Excess p1812Excess(const PathInputs& inputs) {
-  return {p1812Model<float>(inputs), clearAirGround(inputs.emitter.settings.p1812, 0),
+  return {p1812Model<float>(inputs), clearAirGround(inputs.emitter.settings.p1812, kP1812ClutterDistance_m),
           static_cast<float>(inputs.site.height_msl_m)};
 }
 

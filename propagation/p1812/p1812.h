@@ -40,6 +40,10 @@ struct P1812Model {
   EMSCAPE_HD Real excessDb(const ClearAirColumn<Real>& column, Real rx_msl_m) const;
 };
 
+/// Min distance of clutter from either antenna (m), as P.452-18 has it; the recommendation leaves out the
+/// first and the last point of a profile, at whatever spacing.
+constexpr double kP1812ClutterDistance_m = 50;
+
 /// sigma_L (dB) outdoors, at and below the height of the clutter.
 /// @param resolution_m  w_a: width of the square over which the loss varies
 /// @see P.1812-8 section 4.7

@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "emfield/excess/clutter_text.h"
 #include "emfield/excess/emitter_excess.h"
 #include "emfield/excess/model_check.h"
 #include "emfield/ground/ground_posts.h"
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
+#include "emscape/base/units.h"
 #include "emscape/emfield/columns/surface.h"
 #include "emscape/emfield/link/path_budget.h"
 #include "propagation/normal_deviate.h"
@@ -129,12 +133,12 @@ TEST(ClutterHeights, OfAWoodOnThePathCostDiffractionAndAreATermOfTheBudget) {
   }
 }
 
-TEST(ClutterHeights, AreNotAddedWithinFiftyMetresOfTheEnds) {
-  const double range_m[] = {0, 20, 49, 51, 500, 949, 951, 1000};
-  const float cover_m[] = {15, 15, 15, 15, NAN, 15, 15, 15};
-  float ground_m[] = {1, 1, 1, 1, 1, 1, 1, 1};
-  raiseByClutter(range_m, cover_m, 8, ground_m);
-  EXPECT_THAT(ground_m, ::testing::ElementsAre(1, 1, 1, 16, 1, 16, 1, 1));
+TEST(ClutterHeights, AreAddedFromFiftyMetresOfTheEndsOn) {
+  const double range_m[] = {0, 20, 49, 50, 500, 949, 950, 951, 1000};
+  const float cover_m[] = {15, 15, 15, 15, NAN, 15, 15, 15, 15};
+  float ground_m[] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
+  raiseByClutter(range_m, cover_m, 9, ground_m);
+  EXPECT_THAT(ground_m, ::testing::ElementsAre(1, 1, 1, 16, 1, 16, 16, 1, 1));
 }
 
 /// The excess of a surface at a height above ground along the meridian of the mast.
@@ -188,6 +192,98 @@ TEST_P(ClutterInFields, AlongPathsAndAtTheirEndsEqualsThatOfPaths) {
         }
       }
     }
+  }
+}
+
+/// Hills with woods 20 m high in squares of about 400 m, in cells of about 30 m.
+class WoodedHills : public MadeTerrain {
+ public:
+  WoodedHills() : MadeTerrain(45, 5, 0.3), cells_(kCells * kCells) {
+    constexpr int kSquare = 13;
+    for (int j = 0; j < kCells; ++j)
+      for (int i = 0; i < kCells; ++i)
+        cells_[j * kCells + i] = static_cast<std::uint8_t>((i / kSquare + j / kSquare) % 2);
+  }
+  scenario::TerrainView view() const override {
+    scenario::TerrainView view = MadeTerrain::view();
+    constexpr double kPerRad = kCells / degToRad(0.3);
+    view.cover = {cells_.data(), kCells,   kCells, degToRad(44.85), degToRad(4.85), kPerRad,
+                  kPerRad,       kClasses, 2};
+    return view;
+  }
+
+ private:
+  static constexpr int kCells = 1080;
+  static constexpr scenario::CoverValues kClasses[2] = {{true, 0, scenario::CoverZone::land},
+                                                        {true, 20, scenario::CoverZone::land}};
+  std::vector<std::uint8_t> cells_;
+};
+
+/// The power density at a place, from a mast at another.
+double fieldBetween(PropagationModel model, const Surface::Position& from, double from_agl_m,
+                    const Surface::Position& to, double to_agl_m, const scenario::TerrainPtr& terrain,
+                    Backend backend) {
+  const auto scenario = mastOf(model, from_agl_m);
+  scenario::SitePosition& mast = scenario->platforms[0].track[0].position;
+  mast.latitude_deg = from.latitude_deg;
+  mast.longitude_deg = from.longitude_deg;
+  FieldOptions options;
+  options.backend = backend;
+  auto surface = std::make_shared<Surface>();
+  surface->width = surface->height = 1;
+  surface->positions = {to};
+  surface->reference = HeightReference::ground;
+  surface->heights_m = {to_agl_m};
+  options.surface = surface;
+  FieldSolver solver(scenario, terrain, options);
+  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0), terrain);
+  return double(solver.volumes().front().host()->values[0]);
+}
+
+TEST_P(ClutterInFields, OfAPathBackIsThatOfThePath) {
+  const auto terrain = std::make_shared<WoodedHills>();
+  for (const PropagationModel model : {PropagationModel::diffraction, PropagationModel::itm,
+                                       PropagationModel::p1812, PropagationModel::p452}) {
+    std::mt19937 random(7);
+    const auto within = [&](double from, double to) {
+      return std::uniform_real_distribution<double>(from, to)(random);
+    };
+    std::vector<double> differences_db;
+    for (int path = 0; path < 30; ++path) {
+      const double azimuth_rad = within(0, 2 * kPi), range_m = within(1500, 8000);
+      const Surface::Position a{within(44.95, 45.05), within(4.95, 5.05)};
+      const GeodeticPosition end = geodesicDirect(a.latitude_deg, a.longitude_deg, azimuth_rad, range_m);
+      const Surface::Position b{end.latitude_deg, end.longitude_deg};
+      const double there = fieldBetween(model, a, 30, b, 10, terrain, GetParam());
+      const double back = fieldBetween(model, b, 10, a, 30, terrain, GetParam());
+      differences_db.push_back(std::abs(there - back));
+    }
+    std::sort(differences_db.begin(), differences_db.end());
+    EXPECT_LT(differences_db[26], 1) << toString(model);
+    // The evenly spaced profile of itm may have an edge of a wood in one direction only.
+    EXPECT_LT(differences_db[model == PropagationModel::itm ? 28 : 29], 3) << toString(model);
+  }
+}
+
+TEST_P(ClutterInFields, OfOneHeightHasNoStepsAlongAPath) {
+  for (const PropagationModel model : {PropagationModel::p1812, PropagationModel::p452}) {
+    const auto scenario = mastOf(model, 30);
+    scenario->terrain.reset();
+    for (auto* const settings :
+         {static_cast<propagation::ClearAirSettings*>(&scenario->emitters[0].propagation.p1812),
+          static_cast<propagation::ClearAirSettings*>(&scenario->emitters[0].propagation.p452)}) {
+      settings->clutter_height_m = 20;
+      settings->zone = propagation::ClearAirZone::inland;
+    }
+    std::vector<double> latitudes;  // steps of 5 m, from 2.2 km on
+    for (int n = 0; n < 240; ++n) latitudes.push_back(45.02 + n * 5 / 111.1e3);
+    const std::vector<float> field = excessOfSurface(scenario, nullptr, latitudes, 10, GetParam());
+    for (std::size_t n = 1; n < field.size(); ++n)
+      EXPECT_NEAR(field[n], field[n - 1], 0.3) << toString(model) << ", " << n;
+    const PathBudget budget =
+        pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0,
+                   {{latitudes[100], 5, 10 + geoidUndulation_m(latitudes[100], 5)}, 10}, model, nullptr);
+    EXPECT_NEAR(double(field[100]), budget.find("power_density_dbwm2")->value, 0.1) << toString(model);
   }
 }
 

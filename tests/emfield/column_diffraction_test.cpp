@@ -128,6 +128,25 @@ TEST(ColumnDiffraction, WithTerminalClutterIsThatOfTheCpu) {
   }
 }
 
+TEST(ColumnDiffraction, OverClutterIsThatOfTheCpu) {
+  SeenField setup(propagation::PropagationModel::diffraction, 50e3, 15, 3e9);
+  const MadeTerrain woods(44.5, -71.5, 1.2, [&](double east_deg, double north_deg) {
+    const double ground_m = setup.terrain->heightMsl_m(43.9 + north_deg, -72.1 + east_deg);
+    return ground_m + (std::fmod(east_deg, 0.01) < 0.004 ? 20 : 0);
+  });
+  const scenario::TerrainView with_woods = woods.view();
+  setup.ground.terrain.surfaces = with_woods.rasters;
+  setup.ground.terrain.surface_count = 1;
+  setup.ground.is_raised = setup.ground.has_clutter = true;
+  EmitterExcess excess = planned(setup);
+  const std::vector<float> bare = lossesOfTheCpu(setup, excess);
+  excess.is_raised = excess.has_clutter = true;
+  const std::vector<float> cpu = lossesOfTheCpu(setup, excess);
+  EXPECT_NE(cpu, bare);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), cpu);
+  expectSameLosses(setup, lossesOfTheDevice<1>(setup, excess, HUGE_VALF), cpu);
+}
+
 TEST(ColumnDiffraction, OfLeaningColumnsIsThatOfTheCpu) {
   const SeenField setup(propagation::PropagationModel::diffraction, 50e3, 15, 1e9, false, FrameKind::enu);
   const EmitterExcess excess = planned(setup);
