@@ -260,7 +260,7 @@ TEST_P(ClutterInFields, OfAPathBackIsThatOfThePath) {
     }
     std::sort(differences_db.begin(), differences_db.end());
     EXPECT_LT(differences_db[26], 1) << toString(model);
-    // The evenly spaced profile of itm may have an edge of a wood in one direction only.
+    // One path of itm is left out, whose cause is open.
     EXPECT_LT(differences_db[model == PropagationModel::itm ? 28 : 29], 3) << toString(model);
   }
 }
