@@ -20,6 +20,8 @@ enum PeWarning : unsigned {
 constexpr int kPePartBits = 10;
 constexpr int kPeStaircaseShift = 4;                             ///< staircasePart()
 constexpr int kPeBehindShift = kPeStaircaseShift + kPePartBits;  ///< of the marches behind too steep ground
+constexpr int kPeHoldsShift = kPeBehindShift + kPePartBits;  ///< max_angle_deg that holds most of it; 0: none
+constexpr int kPeHoldsBits = 6;
 
 /// Interpolates in dB between azimuths, ranges (cubic) and heights; outside the equation's limits other
 /// models are used.
@@ -96,32 +98,53 @@ struct PeExcess {
   EMSCAPE_HD PeLoss lossAt(const ExcessColumn& column, const Neighbours& beside, const PeSight& sight,
                            float height_msl_m, const Other& other_db) const {
     const float ridge_rad = others.ridgeAngle(static_cast<float>(column.range_m), sight, height_msl_m);
-    PeLoss loss = equationAt(column, beside, height_msl_m, ridge_rad);
+    PeLoss loss = equationAt(column, beside, sight, height_msl_m, ridge_rad);
     if (loss.equation_part < 1) loss.other_db = other_db();
     others.addScatter(static_cast<float>(column.range_m), sight, height_msl_m, loss);
     return loss;
   }
 
   /// Contribution of the equation only.
-  EMSCAPE_HD PeLoss equationAt(const ExcessColumn& column, const Neighbours& beside, float height_msl_m,
-                               float horizon_rad) const {
+  EMSCAPE_HD PeLoss equationAt(const ExcessColumn& column, const Neighbours& beside, const PeSight& sight,
+                               float height_msl_m, float horizon_rad) const {
     const auto range_m = static_cast<float>(column.range_m);
-    const float datum_msl_m = above_ground ? column.ground_msl_m : 0;
     PeLoss loss;
     loss.equation_part = others.equationPart(range_m, height_msl_m, column.ground_msl_m, horizon_rad);
     if (loss.equation_part <= 0) return loss;
-    float at_m = range_m, height_m = height_msl_m - datum_msl_m;
-    if (height_m > top_m) {
-      loss.is_extended = true;
-      at_m = others.crossing_m(range_m, height_msl_m, top_m + datum_msl_m);
-      height_m = top_m;
-    }
-    others.setEquation(cells_db(beside, at_m, height_m), range_m, height_msl_m, loss);
+    const float height_m = height_msl_m - (above_ground ? column.ground_msl_m : 0);
+    loss.is_extended = height_m > top_m;
+    const CellPoint at = !loss.is_extended ? CellPoint{range_m, height_m}
+                         : above_ground    ? lastAboveGround(column, sight, height_msl_m)
+                                        : CellPoint{others.crossing_m(range_m, height_msl_m, top_m), top_m};
+    others.setEquation(cells_db(beside, at.range_m, at.height_m), range_m, height_msl_m, loss);
     if (!(loss.equation_db == loss.equation_db)) loss.equation_part = 0;
     return loss;
   }
 
  private:
+  struct CellPoint {
+    float range_m, height_m;  ///< datum as the cells' heights
+  };
+  /// Where the ray to a position higher above the ground than the cells reach is last among them. Between the
+  /// vertices of the hull (PeSight) the ground is taken at the hull.
+  EMSCAPE_HD CellPoint lastAboveGround(const ExcessColumn& column, const PeSight& sight,
+                                       float height_msl_m) const {
+    const auto range_m = static_cast<float>(column.range_m);
+    const float angle_rad = others.launchAngle(range_m, height_msl_m);
+    float behind_m = range_m, behind_above_m = height_msl_m - column.ground_msl_m;
+    for (int n = sight.count - 1; n >= 0; --n) {
+      const SightPost post = sight.posts.get(n);
+      const float above_m = others.rayHeight_msl_m(angle_rad, post.range_m) - post.ground_m;
+      if (above_m <= top_m) {
+        if (above_m > 0) return {post.range_m, above_m};
+        const float part = (top_m - above_m) / (behind_above_m - above_m);
+        return {post.range_m + part * (behind_m - post.range_m), top_m};
+      }
+      behind_m = post.range_m;
+      behind_above_m = above_m;
+    }
+    return {range_m, top_m};  // the antenna is above the cells
+  }
   /// If the position is within kNext of a neighbour, only that one is used, which saves reading the other.
   static EMSCAPE_HD Neighbours between(float at, int count) {
     constexpr float kNext = 1e-3f;

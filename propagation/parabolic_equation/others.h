@@ -75,6 +75,11 @@ struct PeOthers {
     return (height_msl_m - tx_msl_m) / range_m - curvature_per_m * range_m / 2;
   }
 
+  /// Height (m) of the ray that leaves the antenna at an angle.
+  EMSCAPE_HD float rayHeight_msl_m(float angle_rad, float range_m) const {
+    return tx_msl_m + range_m * (angle_rad + curvature_per_m * range_m / 2);
+  }
+
   /// The pass over the ground to a column.
   /// @param posts  memory for the ground's posts before the column
   EMSCAPE_HD PeSightWalk sightWalk(double range_m, const SightPosts& posts) const {

@@ -218,7 +218,8 @@ struct MadeCells {
   float at(double azimuth, double range) const {
     propagation::ExcessColumn column;
     column.range_m = 100 + 100 * range;
-    return excess.equationAt(column, excess.azimuthsAt(azimuth * excess.azimuth_step_rad), 15, 0).equation_db;
+    return excess.equationAt(column, excess.azimuthsAt(azimuth * excess.azimuth_step_rad), {}, 15, 0)
+        .equation_db;
   }
 };
 

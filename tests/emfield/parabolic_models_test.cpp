@@ -102,7 +102,7 @@ Seam seamOf(double frequency_hz, double height_m) {
     column.range_m = range_m;
     for (float at_m = 22.5F; at_m < 700; at_m += 5) {
       const propagation::PeLoss loss =
-          excess.equationAt(column, excess.azimuthsAt(column.azimuth_rad), at_m, 0);
+          excess.equationAt(column, excess.azimuthsAt(column.azimuth_rad), {}, at_m, 0);
       if (loss.equation_part <= 0 || loss.equation_part >= 1) continue;
       column.height_msl_m = &at_m;
       column.count = 1;
