@@ -20,7 +20,8 @@ namespace {
 constexpr double kAngle_rad = 3 * kPi / 180, kSmallestAngle_rad = kPi / 180;
 constexpr int kPlainIntervals = 4096, kTerrainIntervals = 2048;  // limit the domain's height
 constexpr int kDearIntervals = 8192;                             // limit for a larger angle
-constexpr int kSlopeIntervals = 4096;                            // limit for an angle that holds slopes
+constexpr int kSlopeIntervals = 4096;  // limit for an angle that holds slopes, whatever it takes
+constexpr double kSlopeTime_s = 10;    // on one core, for which there may be more
 /// Over terrain: min fraction of the largest angle that is kept in order to halve the height steps.
 constexpr double kWorthwhileAngle = 0.75;
 /// Up to the first number of azimuths, which a GPU marches concurrently (three on each of its 132
@@ -71,7 +72,7 @@ double planAngle_rad(const EmitterInputs& emitter, const DomainNeeds& needs, dou
   }
   const double wanted_rad = groundAngle_rad(needs);
   if (wanted_rad <= angle_rad) return angle_rad;
-  const int intervals = needs.is_single ? kPeMaxIntervals : kSlopeIntervals;
+  const int intervals = needs.is_single ? kPeMaxIntervals : needs.slope_intervals;
   const double affordable_rad = affordableAngle_rad(emitter, wanted_rad, height_m, intervals) * (1 - 1e-9);
   const std::string ground = fmt::format("slopes of {:.3g} degrees and ridges seen at {:.3g}",
                                          radToDeg(needs.slope_rad), radToDeg(needs.ridge_rad));
@@ -100,13 +101,44 @@ bool areSameAir(const std::vector<RefractivityAlongPath>& air) {
   return std::all_of(air.begin(), air.end(), [&](const auto& other) { return other == air.front(); });
 }
 
+struct AutomaticAzimuths {
+  double one_apart = 0, two_apart = 0, chosen = 0;
+};
+AutomaticAzimuths automaticAzimuths(const RadialInputs& radials, double range_step_m) {
+  AutomaticAzimuths found;
+  const double voxel_rad = std::max(radials.spacing_m, range_step_m) / radials.farthest_m;
+  found.one_apart = std::ceil(radials.azimuth_span_rad / voxel_rad);
+  found.two_apart = std::ceil(radials.azimuth_span_rad / (2 * voxel_rad));
+  found.chosen = std::clamp(std::max(std::min(found.one_apart, double(kFewAzimuths)), found.two_apart),
+                            double(kStepLanes), double(kMaxAzimuths));
+  return found;
+}
+
+/// True for the positions of a vertical diagram: one group of azimuths, which a CPU marches.
+bool isNarrow(const RadialInputs& radials) {
+  return automaticAzimuths(radials, kFinestStep_m).one_apart <= kStepLanes;
+}
+
+/// Number of azimuths from the settings; 0: automatic.
+double givenAzimuths(const PathInputs& inputs, const RadialInputs& radials) {
+  return isNarrow(radials) ? 0 : inputs.emitter.settings.parabolic_equation.azimuths;
+}
+
+/// Height steps that an angle for the slopes may take. A GPU marches kMaxBlockIntervals.
+int slopeIntervals(const PathInputs& inputs, const RadialInputs& radials) {
+  const double given = givenAzimuths(inputs, radials);
+  const double azimuths = given > 0 ? given : automaticAzimuths(radials, kFinestStep_m).chosen;
+  const double step_m = std::max(kFinestStep_m, std::min(radials.spacing_m, inputs.post_spacing_m));
+  const double time_s = azimuths * radials.farthest_m / step_m * secondsPerPoint(radials.has_terrain);
+  const int most = isNarrow(radials) ? kPeMaxIntervals : kMaxBlockIntervals;
+  int intervals = kSlopeIntervals;
+  while (intervals < most && 2 * intervals * time_s <= kSlopeTime_s) intervals *= 2;
+  return intervals;
+}
+
 void planAzimuths(const PathInputs& inputs, const RadialInputs& radials, PePlan& plan) {
-  const double given = inputs.emitter.settings.parabolic_equation.azimuths;
-  const double voxel_rad = std::max(radials.spacing_m, plan.grid.range_step_m) / radials.farthest_m;
-  const double one_apart = std::ceil(radials.azimuth_span_rad / voxel_rad);
-  const double two_apart = std::ceil(radials.azimuth_span_rad / (2 * voxel_rad));
-  const double automatic =
-      std::clamp(std::max(std::min(one_apart, double(kFewAzimuths)), two_apart), 8.0, double(kMaxAzimuths));
+  const double given = givenAzimuths(inputs, radials);
+  const auto [one_apart, two_apart, automatic] = automaticAzimuths(radials, plan.grid.range_step_m);
   std::string why = fmt::format("{} at the far end, at most {} around",
                                 one_apart <= kFewAzimuths  ? "one voxel apart"
                                 : two_apart > kFewAzimuths ? "two voxels apart"
@@ -144,10 +176,16 @@ void planCells(const RadialInputs& radials, PeCells kept, PePlan& plan) {
   cells.overlap = steps >= 2 && !cells.are_points;
   cells.range_step_m = plan.grid.range_step_m * std::max(1.0, std::floor(steps / 2));
   cells.ranges = int(std::ceil(radials.farthest_m / cells.range_step_m)) + 1;
-  const double lowest_m = radials.above_ground ? 0 : radials.lowest_ground_msl_m;
-  plan.top_m = lowest_m + kUsablePart * plan.grid.usableTop_m();
-  const double highest_m = std::min(radials.highest_m, plan.top_m);
-  const double bottom_m = std::min(radials.lowest_m, plan.top_m - radials.height_step_m);
+  // Below this height rays pass the lowest ground below the absorber, too.
+  const double top_m = kUsablePart * plan.grid.usableTop_m();
+  plan.top_msl_m = radials.lowest_ground_msl_m + top_m;
+  double highest_m = std::min(radials.highest_m, plan.top_msl_m), last_m = plan.top_msl_m;
+  if (radials.above_ground) {
+    const bool are_extended = radials.highest_m + radials.highest_ground_msl_m > plan.top_msl_m;
+    highest_m = are_extended ? top_m : radials.highest_m;  // rays cross the top above any ground
+    last_m = top_m;
+  }
+  const double bottom_m = std::min(radials.lowest_m, last_m - radials.height_step_m);
   const double least_m = (highest_m - bottom_m) / (kMaxHeights - 2);
   const bool are_between = !radials.above_ground && !radials.are_level;
   cells.height_step_m = std::max(radials.height_step_m / (are_between ? 5 : 1), least_m);
@@ -188,7 +226,7 @@ void planRanges(const RadialInputs& radials, PePlan& plan) {
 void addGroundNeeds(const PathInputs& inputs, const RadialInputs& radials, double curvature_per_m,
                     DomainNeeds& needs) {
   constexpr int kAzimuths = 32;
-  constexpr double kHeldPart = 0.98;  // of the steps
+  const double held_part = isNarrow(radials) ? 1 : 0.98;  // of the steps
   if (!radials.has_terrain) return;
   const double step_m = std::max(inputs.post_spacing_m, kFinestStep_m);
   const int count = int(radials.farthest_m / step_m) + 1;
@@ -200,7 +238,7 @@ void addGroundNeeds(const PathInputs& inputs, const RadialInputs& radials, doubl
                    count, ground_msl_m.data());
     ground.add(ground_msl_m.data(), count, step_m, inputs.site.height_msl_m, curvature_per_m);
   }
-  needs.slope_rad = ground.slope_rad(kHeldPart);
+  needs.slope_rad = ground.slope_rad(held_part);
   needs.ridge_rad = ground.ridge_rad;
 }
 
@@ -249,8 +287,9 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
   if (settings.top_m > 0) height_m = needs.is_single ? std::max(settings.top_m, height_m) : settings.top_m;
   max_angle_rad = planAngle_rad(emitter, needs, height_m, angle_why);
   if (!needs.is_single && settings.top_m <= 0) {
-    const int intervals = needs.post_spacing_m > 0 ? kTerrainIntervals : kPlainIntervals;
-    height_m = std::max(height_m, std::min(needs.wanted_m, affordable_m(emitter, max_angle_rad, intervals)));
+    const int intervals = needs.post_spacing_m > 0 ? needs.height_intervals : kPlainIntervals;
+    const double affordable = affordable_m(emitter, max_angle_rad, intervals) * (1 - 1e-9);
+    height_m = std::max(height_m, std::min(needs.wanted_m, affordable));
   }
   if (height_m < needs.required_m) {
     throw Error(
@@ -352,10 +391,13 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   const double highest_m = std::max(radials.highest_ground_msl_m, source_msl_m);
   DomainNeeds needs;
   needs.required_m = kClear * (highest_m - lowest_m) + kMargin_m;
-  needs.wanted_m = radials.highest_m + 2 * radials.height_step_m - (radials.above_ground ? 0 : lowest_m);
+  needs.wanted_m = radials.highest_m + 2 * radials.height_step_m - lowest_m +
+                   (radials.above_ground ? radials.highest_ground_msl_m : 0);
   needs.post_spacing_m = radials.has_terrain ? inputs.post_spacing_m : 0;
   needs.farthest_m = radials.farthest_m;
   needs.spacing_m = radials.spacing_m;
+  needs.slope_intervals = slopeIntervals(inputs, radials);
+  needs.height_intervals = isNarrow(radials) ? needs.slope_intervals : kTerrainIntervals;
 
   PePlan plan;
   const RefractivityAlongPath air =
@@ -379,12 +421,10 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
     return radToDeg(bandEdgeWidth_rad(half_wavelength_m, range_m));
   };
   plan.choices.push_back(
-      {"extent",
-       fmt::format(
-           "from {:.4g} m, to {:.4g} m above {}, up to the largest angle less {:.2g} degrees at 1 km, "
-           "{:.2g} at 10 km (the band's edge diffracts): elsewhere other models apply",
-           plan.min_range_m, plan.top_m, plan.cells.above_ground ? "the ground" : "mean sea level",
-           blurred_deg(1e3), blurred_deg(1e4))});
+      {"extent", fmt::format("from {:.4g} m, to {:.4g} m above mean sea level, up to the largest angle less "
+                             "{:.2g} degrees at 1 km, "
+                             "{:.2g} at 10 km (the band's edge diffracts): elsewhere other models apply",
+                             plan.min_range_m, plan.top_msl_m, blurred_deg(1e3), blurred_deg(1e4))});
   const auto members = double(plan.air.size());
   const double lanes = kStepLanes * std::ceil(double(plan.azimuths) / kStepLanes);
   const double marched = plan.ranges.empty() ? lanes * plan.cells.ranges

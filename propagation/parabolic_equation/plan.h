@@ -55,8 +55,10 @@ struct DomainNeeds {
   double farthest_m = 0;
   double spacing_m = 0;  ///< of the positions along the ground, resolved by the range steps; 0: one position
   bool is_single = false;  ///< one azimuth: the domain contains wanted_m at any cost
-  double slope_rad = 0;    ///< slopes of the ground that the band should hold
-  double ridge_rad = 0;    ///< largest angle at which the field passes a ridge
+  /// Of several azimuths over terrain: height steps that an angle for the slopes may take, and a higher top.
+  int slope_intervals = 0, height_intervals = 0;
+  double slope_rad = 0;  ///< slopes of the ground that the band should hold
+  double ridge_rad = 0;  ///< largest angle at which the field passes a ridge
 };
 
 /// The needs of ground at even steps, for an automatic largest angle.
@@ -98,7 +100,7 @@ struct PePlan {
   double first_azimuth_rad = 0, azimuth_step_rad = 0;
   double max_angle_rad = 0;
   double min_range_m = 0;  ///< at shorter ranges other models are used
-  double top_m = 0;        ///< datum as the cells' heights; above it: extended along the ray
+  double top_msl_m = 0;    ///< above it: extended along the ray
   std::vector<ModelChoice> choices;
 
   double azimuth_rad(int i) const { return first_azimuth_rad + i * azimuth_step_rad; }
