@@ -12,7 +12,7 @@
 #include "apps/common/components.h"
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
-#include "base/geodesy/gdal_file.h"
+#include "base/geodesy/gdal_environment.h"
 #include "base/text/failure_text.h"
 #include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"

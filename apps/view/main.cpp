@@ -9,7 +9,7 @@
 #include "apps/view/app.h"
 #include "apps/view/files/message_log.h"
 #include "apps/view/files/recordings.h"
-#include "base/geodesy/gdal_file.h"
+#include "base/geodesy/gdal_environment.h"
 #include "base/text/failure_text.h"
 #include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"

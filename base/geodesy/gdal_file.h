@@ -13,11 +13,6 @@ namespace emscape::gdal {
 /// systems in files may name grids by address. The first call has an effect on the process.
 void prepare();
 
-/// Removes the variables of GDAL and PROJ from the environment of the process, but those that name folders of
-/// their data or a size of memory: what is read and written does not depend on them. For the beginning of a
-/// program, before it starts threads.
-void ignoreEnvironment();
-
 /// Describes why a name is not that of a regular local file; empty if it is.
 std::string faultOfName(const std::filesystem::path& file);
 

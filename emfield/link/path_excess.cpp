@@ -97,13 +97,14 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
                            terminal.is_larger ? ", what it has more than the terrain" : ""),
                loss_db);
     excess.clutter_db += loss_db;
-    constexpr float kGrazing_db = 6;
-    if (!terminal.is_larger && !model.on_smooth_surface && bare_db > kGrazing_db && std::isfinite(bare_db)) {
+    constexpr double kGrazing_db = 6;
+    if (!terminal.is_larger && !model.on_smooth_surface && excess.loss_db > kGrazing_db &&
+        std::isfinite(excess.loss_db)) {
       excess.warnings.push_back(fmt::format(
           "emitter '{}': terrain costs {:.1f} dB on this path, and {:.1f} dB of P.2108-1 are added to it: on "
           "measured paths that terrain blocks, such sums were 9 to 20 dB too high in the mean; 'ground: "
           "{{terminal_clutter_combine: larger}}' takes the larger of both",
-          emitter.name, bare_db, loss_db));
+          emitter.name, excess.loss_db, loss_db));
     }
   }
   if (propagation::hasAirLoss(inputs.emitter)) {

@@ -101,7 +101,7 @@ SeriesFiles::SeriesFiles(fs::path folder, const std::string& name, const std::ve
 std::vector<SeriesFiles::VolumeFile> SeriesFiles::volumeFilesOf(int step) const {
   std::vector<VolumeFile> files;
   std::vector<volume::FileFormat> formats = volume::fileFormats();
-  formats.push_back({kMeshFormat, true, true, true});
+  formats.push_back({kMeshFormat, true, true});
   for (const volume::FileFormat& format : formats) {
     if (formats_.count(format.name) == 0) continue;
     const fs::path file = volume::seriesFile(folder_, name_, step + 1, format.name).filename();
