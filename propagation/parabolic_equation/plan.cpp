@@ -20,8 +20,7 @@ namespace {
 constexpr double kAngle_rad = 3 * kPi / 180, kSmallestAngle_rad = kPi / 180;
 constexpr int kPlainIntervals = 4096, kTerrainIntervals = 2048;  // limit the domain's height
 constexpr int kDearIntervals = 8192;                             // limit for a larger angle
-constexpr int kSlopeIntervals = 4096;  // limit for an angle that holds slopes, whatever it takes
-constexpr double kSlopeTime_s = 10;    // on one core, for which there may be more
+constexpr int kSlopeIntervals = 4096;                            // limit for an angle that holds slopes
 /// Over terrain: min fraction of the largest angle that is kept in order to halve the height steps.
 constexpr double kWorthwhileAngle = 0.75;
 /// Up to the first number of azimuths, which a GPU marches concurrently (three on each of its 132
@@ -72,7 +71,7 @@ double planAngle_rad(const EmitterInputs& emitter, const DomainNeeds& needs, dou
   }
   const double wanted_rad = groundAngle_rad(needs);
   if (wanted_rad <= angle_rad) return angle_rad;
-  const int intervals = needs.is_single ? kPeMaxIntervals : needs.slope_intervals;
+  const int intervals = needs.is_single ? kPeMaxIntervals : kSlopeIntervals;
   const double affordable_rad = affordableAngle_rad(emitter, wanted_rad, height_m, intervals) * (1 - 1e-9);
   const std::string ground = fmt::format("slopes of {:.3g} degrees and ridges seen at {:.3g}",
                                          radToDeg(needs.slope_rad), radToDeg(needs.ridge_rad));
@@ -101,44 +100,13 @@ bool areSameAir(const std::vector<RefractivityAlongPath>& air) {
   return std::all_of(air.begin(), air.end(), [&](const auto& other) { return other == air.front(); });
 }
 
-struct AutomaticAzimuths {
-  double one_apart = 0, two_apart = 0, chosen = 0;
-};
-AutomaticAzimuths automaticAzimuths(const RadialInputs& radials, double range_step_m) {
-  AutomaticAzimuths found;
-  const double voxel_rad = std::max(radials.spacing_m, range_step_m) / radials.farthest_m;
-  found.one_apart = std::ceil(radials.azimuth_span_rad / voxel_rad);
-  found.two_apart = std::ceil(radials.azimuth_span_rad / (2 * voxel_rad));
-  found.chosen = std::clamp(std::max(std::min(found.one_apart, double(kFewAzimuths)), found.two_apart),
-                            double(kStepLanes), double(kMaxAzimuths));
-  return found;
-}
-
-/// True for the positions of a vertical diagram: one group of azimuths, which a CPU marches.
-bool isNarrow(const RadialInputs& radials) {
-  return automaticAzimuths(radials, kFinestStep_m).one_apart <= kStepLanes;
-}
-
-/// Number of azimuths from the settings; 0: automatic.
-double givenAzimuths(const PathInputs& inputs, const RadialInputs& radials) {
-  return isNarrow(radials) ? 0 : inputs.emitter.settings.parabolic_equation.azimuths;
-}
-
-/// Height steps that an angle for the slopes may take. A GPU marches kMaxBlockIntervals.
-int slopeIntervals(const PathInputs& inputs, const RadialInputs& radials) {
-  const double given = givenAzimuths(inputs, radials);
-  const double azimuths = given > 0 ? given : automaticAzimuths(radials, kFinestStep_m).chosen;
-  const double step_m = std::max(kFinestStep_m, std::min(radials.spacing_m, inputs.post_spacing_m));
-  const double time_s = azimuths * radials.farthest_m / step_m * secondsPerPoint(radials.has_terrain);
-  const int most = isNarrow(radials) ? kPeMaxIntervals : kMaxBlockIntervals;
-  int intervals = kSlopeIntervals;
-  while (intervals < most && 2 * intervals * time_s <= kSlopeTime_s) intervals *= 2;
-  return intervals;
-}
-
 void planAzimuths(const PathInputs& inputs, const RadialInputs& radials, PePlan& plan) {
-  const double given = givenAzimuths(inputs, radials);
-  const auto [one_apart, two_apart, automatic] = automaticAzimuths(radials, plan.grid.range_step_m);
+  const double given = inputs.emitter.settings.parabolic_equation.azimuths;
+  const double voxel_rad = std::max(radials.spacing_m, plan.grid.range_step_m) / radials.farthest_m;
+  const double one_apart = std::ceil(radials.azimuth_span_rad / voxel_rad);
+  const double two_apart = std::ceil(radials.azimuth_span_rad / (2 * voxel_rad));
+  const double automatic =
+      std::clamp(std::max(std::min(one_apart, double(kFewAzimuths)), two_apart), 8.0, double(kMaxAzimuths));
   std::string why = fmt::format("{} at the far end, at most {} around",
                                 one_apart <= kFewAzimuths  ? "one voxel apart"
                                 : two_apart > kFewAzimuths ? "two voxels apart"
@@ -226,7 +194,7 @@ void planRanges(const RadialInputs& radials, PePlan& plan) {
 void addGroundNeeds(const PathInputs& inputs, const RadialInputs& radials, double curvature_per_m,
                     DomainNeeds& needs) {
   constexpr int kAzimuths = 32;
-  const double held_part = isNarrow(radials) ? 1 : 0.98;  // of the steps
+  constexpr double kHeldPart = 0.98;  // of the steps
   if (!radials.has_terrain) return;
   const double step_m = std::max(inputs.post_spacing_m, kFinestStep_m);
   const int count = int(radials.farthest_m / step_m) + 1;
@@ -238,7 +206,7 @@ void addGroundNeeds(const PathInputs& inputs, const RadialInputs& radials, doubl
                    count, ground_msl_m.data());
     ground.add(ground_msl_m.data(), count, step_m, inputs.site.height_msl_m, curvature_per_m);
   }
-  needs.slope_rad = ground.slope_rad(held_part);
+  needs.slope_rad = ground.slope_rad(kHeldPart);
   needs.ridge_rad = ground.ridge_rad;
 }
 
@@ -287,7 +255,7 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
   if (settings.top_m > 0) height_m = needs.is_single ? std::max(settings.top_m, height_m) : settings.top_m;
   max_angle_rad = planAngle_rad(emitter, needs, height_m, angle_why);
   if (!needs.is_single && settings.top_m <= 0) {
-    const int intervals = needs.post_spacing_m > 0 ? needs.height_intervals : kPlainIntervals;
+    const int intervals = needs.post_spacing_m > 0 ? kTerrainIntervals : kPlainIntervals;
     const double affordable = affordable_m(emitter, max_angle_rad, intervals) * (1 - 1e-9);
     height_m = std::max(height_m, std::min(needs.wanted_m, affordable));
   }
@@ -396,8 +364,6 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   needs.post_spacing_m = radials.has_terrain ? inputs.post_spacing_m : 0;
   needs.farthest_m = radials.farthest_m;
   needs.spacing_m = radials.spacing_m;
-  needs.slope_intervals = slopeIntervals(inputs, radials);
-  needs.height_intervals = isNarrow(radials) ? needs.slope_intervals : kTerrainIntervals;
 
   PePlan plan;
   const RefractivityAlongPath air =

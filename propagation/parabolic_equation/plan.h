@@ -55,10 +55,8 @@ struct DomainNeeds {
   double farthest_m = 0;
   double spacing_m = 0;  ///< of the positions along the ground, resolved by the range steps; 0: one position
   bool is_single = false;  ///< one azimuth: the domain contains wanted_m at any cost
-  /// Of several azimuths over terrain: height steps that an angle for the slopes may take, and a higher top.
-  int slope_intervals = 0, height_intervals = 0;
-  double slope_rad = 0;  ///< slopes of the ground that the band should hold
-  double ridge_rad = 0;  ///< largest angle at which the field passes a ridge
+  double slope_rad = 0;    ///< slopes of the ground that the band should hold
+  double ridge_rad = 0;    ///< largest angle at which the field passes a ridge
 };
 
 /// The needs of ground at even steps, for an automatic largest angle.

@@ -5,19 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "emfield/columns/station.h"
 #include "emfield/excess/clutter_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "emscape/base/work.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/study/maps/area.h"
 #include "emscape/study/maps/coverage.h"
 #include "emscape/volume/dense_volume.h"
-#include "propagation/registry/model_info.h"
 #include "study/maps/contour_lines.h"
 
 namespace emscape::study {
@@ -114,70 +111,34 @@ class Solver {
   /// @param emitter  index in the scenarios of solve()
   Solver(const VerticalRequest& request, int emitter, const VerticalDiagram& diagram,
          emfield::FieldOptions options)
-      : request_(request), emitter_(emitter), diagram_(diagram), options_(std::move(options)) {
+      : request_(request), emitter_(emitter), options_(std::move(options)) {
+    auto surface = std::make_shared<emfield::Surface>();
+    surface->width = request.ranges;
+    surface->height = static_cast<int>(request.azimuths_deg.size());
+    surface->reference = request.axis;
+    surface->heights_m = diagram.heights_m;
+    for (const double azimuth_deg : request.azimuths_deg) {
+      for (const double range_m : diagram.ranges_m) {
+        const GeodeticPosition position =
+            geodesicDirect(diagram.latitude_deg, diagram.longitude_deg, degToRad(azimuth_deg), range_m);
+        surface->positions.push_back({position.latitude_deg, position.longitude_deg});
+      }
+    }
+    options_.surface = surface;
     options_.allow_missing_terrain = true;
     options_.quantities.clear();
   }
 
-  /// Models that march outwards march along each cut by itself, with the steps that its ground needs.
-  Solved solve(const scenario::Snapshot& snapshot, const scenario::TerrainPtr& terrain) {
-    const std::vector<scenario::Emitter>& emitters = snapshot.scenario->emitters;
-    const bool marches = std::any_of(emitters.begin(), emitters.end(), [](const scenario::Emitter& emitter) {
-      return propagation::modelInfo(emitter.propagation.model).radial != nullptr;
-    });
-    const std::size_t cuts = request_.azimuths_deg.size(), at_once = marches ? 1 : cuts;
-    Solved solved;
-    for (std::size_t cut = 0; cut < cuts; cut += at_once) {
-      const WorkPart part("", static_cast<double>(cut) / static_cast<double>(cuts),
-                          static_cast<double>(cut + at_once) / static_cast<double>(cuts));
-      solveCuts(cut, cut + at_once, snapshot, terrain, solved);
-    }
-    for (const auto& [warning, of_cuts] : cuts_of_) {
-      std::string text = warning;
-      if (of_cuts.size() * at_once < cuts) {
-        text += " (azimuth";
-        for (const std::size_t cut : of_cuts) text += fmt::format(" {:g}", request_.azimuths_deg[cut]);
-        text += " deg)";
-      }
-      solved.warnings.push_back(std::move(text));
-    }
-    cuts_of_.clear();
-    return solved;
-  }
-
- private:
-  std::shared_ptr<emfield::Surface> surfaceOf(std::size_t first, std::size_t last) const {
-    auto surface = std::make_shared<emfield::Surface>();
-    surface->width = request_.ranges;
-    surface->height = static_cast<int>(last - first);
-    surface->reference = request_.axis;
-    surface->heights_m = diagram_.heights_m;
-    for (std::size_t cut = first; cut < last; ++cut) {
-      for (const double range_m : diagram_.ranges_m) {
-        const GeodeticPosition position = geodesicDirect(diagram_.latitude_deg, diagram_.longitude_deg,
-                                                         degToRad(request_.azimuths_deg[cut]), range_m);
-        surface->positions.push_back({position.latitude_deg, position.longitude_deg});
-      }
-    }
-    return surface;
-  }
-
-  void solveCuts(std::size_t first, std::size_t last, const scenario::Snapshot& snapshot,
-                 const scenario::TerrainPtr& terrain, Solved& solved) {
-    options_.surface = surfaceOf(first, last);
+  Solved solve(const scenario::Snapshot& snapshot, const scenario::TerrainPtr& terrain) const {
     emfield::FieldSolver solver(snapshot.scenario, terrain, options_);
     const std::size_t channel = *channelOf(emitter_, solver.channels());
     solver.update(snapshot);
     const auto volume = solver.volumes()[channel].host();
-    for (const std::string& warning : solver.warnings()) {
-      auto found =
-          std::find_if(cuts_of_.begin(), cuts_of_.end(), [&](const auto& of) { return of.first == warning; });
-      if (found == cuts_of_.end()) found = cuts_of_.insert(found, {warning, {}});
-      found->second.push_back(first);
-    }
+    Solved solved;
+    solved.warnings = solver.warnings();
     const std::size_t ranges = static_cast<std::size_t>(request_.ranges);
-    const std::size_t positions = ranges * (last - first);
-    for (std::size_t cut = 0; cut < last - first; ++cut) {
+    const std::size_t positions = ranges * request_.azimuths_deg.size();
+    for (std::size_t cut = 0; cut < request_.azimuths_deg.size(); ++cut) {
       std::vector<float> values;
       for (std::size_t k = 0; k < options_.surface->heights_m.size(); ++k) {
         for (std::size_t p = cut * ranges; p < (cut + 1) * ranges; ++p) {
@@ -194,13 +155,13 @@ class Solver {
                                           ground.begin() + begin + static_cast<std::ptrdiff_t>(ranges));
       }
     }
+    return solved;
   }
 
+ private:
   const VerticalRequest& request_;
   int emitter_;
-  const VerticalDiagram& diagram_;
   emfield::FieldOptions options_;
-  std::vector<std::pair<std::string, std::vector<std::size_t>>> cuts_of_;  ///< of each warning
 };
 
 std::vector<VerticalCut::Line> contoursOf(const std::vector<float>& values, const VerticalDiagram& diagram) {
@@ -381,7 +342,7 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
   }
   diagram.heights_m = evenly(lowest_m, request.max_height_m, request.heights);
 
-  Solver solver(request, index, diagram, std::move(options));
+  const Solver solver(request, index, diagram, std::move(options));
   Solved solved = solver.solve(snapshot, below);
   diagram.warnings = warningsOf(*scenario);
   diagram.warnings.insert(diagram.warnings.end(), solved.warnings.begin(), solved.warnings.end());

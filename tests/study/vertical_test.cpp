@@ -131,22 +131,6 @@ TEST(Vertical, ParabolicEquationFollowsRaysHighAboveLowGround) {
   EXPECT_GT(compared, 100);
 }
 
-TEST(Vertical, CutsOfTheParabolicEquationDoNotDependOnEachOther) {
-  const std::shared_ptr<scenario::Scenario> scenario = mastInAHollow();
-  const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-  VerticalRequest request = small(2, HeightReference::mean_sea_level);
-  request.quantity = scenario::Quantity::power_density_dbwm2;
-  request.threshold = -40;
-  request.range_m = 3000;
-  request.azimuths_deg = {110};
-  const VerticalDiagram alone = computeVertical(scenario, terrain, request, {});
-  request.azimuths_deg = {40, 110};
-  const VerticalDiagram both = computeVertical(scenario, terrain, request, {});
-  ASSERT_EQ(both.cuts.size(), 2u);
-  EXPECT_THAT(both.cuts[1].values,
-              ::testing::Pointwise(::testing::NanSensitiveFloatEq(), alone.cuts[0].values));
-}
-
 TEST(Vertical, ValueEqualsProfile) {
   const auto scenario = jacksboro();
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
