@@ -33,6 +33,20 @@ class SightMemory {
   int posts_, threads_;
 };
 
+/// The ground before a column, as between the posts of its profile.
+__device__ float groundBefore(const EquationTask& task, const FastInverse& path, float end_msl_m,
+                              float range_m) {
+  const int post = task.ground.lastBefore(range_m);
+  const auto heightAt = [&](double at_m) {
+    return groundAt(task.station, task.ground, {at_m, path.sin_azimuth, path.cos_azimuth});
+  };
+  const double post_m = task.ground.ranges_m[post];
+  const bool is_last = post >= task.ground.lastBefore(path.distance_m);
+  const double next_m = is_last ? path.distance_m : task.ground.ranges_m[post + 1];
+  return propagation::PeExcess::groundBetween(post_m, heightAt(post_m), next_m,
+                                              is_last ? end_msl_m : heightAt(next_m), range_m);
+}
+
 /// A segment of a column.
 __device__ void fillSegment(const EquationTask& task, const ExcessGrid& grid, int c, int segment,
                             const SightPosts& posts) {
@@ -51,6 +65,9 @@ __device__ void fillSegment(const EquationTask& task, const ExcessGrid& grid, in
              });
   const PeSight sight = walk.sight(column.ground_msl_m);
   const auto beside = model.azimuthsAt(column.azimuth_rad);
+  const auto ground_msl_m = [&](float range_m) {
+    return groundBefore(task, path, column.ground_msl_m, range_m);
+  };
   const propagation::AirColumn above(task.air, static_cast<float>(path.distance_m));
   for (int k = grid.firstLayer(segment); k < grid.firstLayer(segment + 1); ++k) {
     const std::size_t voxel = static_cast<std::size_t>(k) * grid.column_count + static_cast<std::size_t>(c);
@@ -59,7 +76,7 @@ __device__ void fillSegment(const EquationTask& task, const ExcessGrid& grid, in
       continue;
     }
     const auto height_msl_m = static_cast<float>(heightMsl_m(base, static_cast<double>(grid.t_m[k])));
-    const PeLoss loss = model.lossAt(column, beside, sight, height_msl_m, [&] {
+    const PeLoss loss = model.lossAt(column, beside, sight, height_msl_m, ground_msl_m, [&] {
       return model.others.over_terrain ? task.to.out.excess.get(voxel)
                                        : model.others.twoRays_db(column.range_m, height_msl_m);
     });

@@ -20,6 +20,8 @@ enum PeWarning : unsigned {
 constexpr int kPePartBits = 10;
 constexpr int kPeStaircaseShift = 4;                             ///< staircasePart()
 constexpr int kPeBehindShift = kPeStaircaseShift + kPePartBits;  ///< of the marches behind too steep ground
+constexpr int kPeHoldsShift = kPeBehindShift + kPePartBits;  ///< max_angle_deg that holds most of it; 0: none
+constexpr int kPeHoldsBits = 6;
 
 /// Interpolates in dB between azimuths, ranges (cubic) and heights; outside the equation's limits other
 /// models are used.
@@ -40,7 +42,7 @@ struct PeExcess {
   /// step. first_range_m is the range of the first cell, if it were as long as the others.
   float first_range_m = 0, range_step_m = 0;
   float bottom_m = 0, height_step_m = 0;
-  float top_m = 0;  ///< datum as the cells' heights; above it: extended along the ray
+  float top_msl_m = 0;  ///< above it: extended along the ray
   unsigned warnings = 0;
 
   /// @param excess_db  one per voxel; NaN over missing terrain
@@ -56,7 +58,8 @@ struct PeExcess {
     const Neighbours beside = azimuthsAt(column.azimuth_rad);
     bool has_others = false;
     for (int k = 0; k < column.count; ++k) {
-      const PeLoss loss = lossAt(column, beside, sight, column.height_msl_m[k], [&] {
+      const auto ground_msl_m = [&](float range_m) { return groundOf(column.profile, range_m); };
+      const PeLoss loss = lossAt(column, beside, sight, column.height_msl_m[k], ground_msl_m, [&] {
         if (!has_others) others.fill(column, scratch, scratch.other_db);
         has_others = true;
         return scratch.other_db[k];
@@ -90,35 +93,56 @@ struct PeExcess {
   }
 
   /// Contributions to the loss at a height of a column.
-  /// @param beside    azimuthsAt() the column's
-  /// @param other_db  gives the other model's loss
-  template <class Other>
+  /// @param beside        azimuthsAt() the column's
+  /// @param ground_msl_m  gives the ground at a nearer range
+  /// @param other_db      gives the other model's loss
+  template <class Ground, class Other>
   EMSCAPE_HD PeLoss lossAt(const ExcessColumn& column, const Neighbours& beside, const PeSight& sight,
-                           float height_msl_m, const Other& other_db) const {
+                           float height_msl_m, const Ground& ground_msl_m, const Other& other_db) const {
     const float ridge_rad = others.ridgeAngle(static_cast<float>(column.range_m), sight, height_msl_m);
-    PeLoss loss = equationAt(column, beside, height_msl_m, ridge_rad);
+    PeLoss loss = equationAt(column, beside, height_msl_m, ridge_rad, ground_msl_m);
     if (loss.equation_part < 1) loss.other_db = other_db();
     others.addScatter(static_cast<float>(column.range_m), sight, height_msl_m, loss);
     return loss;
   }
 
   /// Contribution of the equation only.
+  template <class Ground>
   EMSCAPE_HD PeLoss equationAt(const ExcessColumn& column, const Neighbours& beside, float height_msl_m,
-                               float horizon_rad) const {
+                               float horizon_rad, const Ground& ground_msl_m) const {
     const auto range_m = static_cast<float>(column.range_m);
-    const float datum_msl_m = above_ground ? column.ground_msl_m : 0;
     PeLoss loss;
     loss.equation_part = others.equationPart(range_m, height_msl_m, column.ground_msl_m, horizon_rad);
     if (loss.equation_part <= 0) return loss;
-    float at_m = range_m, height_m = height_msl_m - datum_msl_m;
-    if (height_m > top_m) {
+    float at_m = range_m, height_m = height_msl_m, datum_msl_m = above_ground ? column.ground_msl_m : 0;
+    if (height_msl_m > top_msl_m) {
       loss.is_extended = true;
-      at_m = others.crossing_m(range_m, height_msl_m, top_m + datum_msl_m);
-      height_m = top_m;
+      height_m = top_msl_m;
+      at_m = others.crossing_m(range_m, height_msl_m, top_msl_m);
+      if (above_ground && at_m < range_m) datum_msl_m = ground_msl_m(at_m);
     }
-    others.setEquation(cells_db(beside, at_m, height_m), range_m, height_msl_m, loss);
+    others.setEquation(cells_db(beside, at_m, height_m - datum_msl_m), range_m, height_msl_m, loss);
     if (!(loss.equation_db == loss.equation_db)) loss.equation_part = 0;
     return loss;
+  }
+
+  /// Ground between the posts of a profile that begins at the antenna.
+  static EMSCAPE_HD float groundOf(const TerrainProfile& profile, float range_m) {
+    int low = 0, high = profile.count - 1;
+    while (low + 1 < high) {
+      const int middle = (low + high) / 2;
+      (profile.range_m[middle] < range_m ? low : high) = middle;
+    }
+    return groundBetween(profile.range_m[low], profile.height_msl_m[low], profile.range_m[high],
+                         profile.height_msl_m[high], range_m);
+  }
+  /// Ground between two posts.
+  static EMSCAPE_HD float groundBetween(double low_m, float low_msl_m, double high_m, float high_msl_m,
+                                        float range_m) {
+    const auto length_m = static_cast<float>(high_m - low_m);
+    if (!(length_m > 0)) return high_msl_m;
+    const float part = static_cast<float>(range_m - low_m) / length_m;
+    return low_msl_m + std::fmin(std::fmax(part, 0.0f), 1.0f) * (high_msl_m - low_msl_m);
   }
 
  private:

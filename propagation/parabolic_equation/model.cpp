@@ -16,6 +16,7 @@
 #include "propagation/parabolic_equation/air/refractivity_field.h"
 #include "propagation/parabolic_equation/march/march_step.h"
 #include "propagation/parabolic_equation/plan.h"
+#include "propagation/parabolic_equation/warnings.h"
 #include "propagation/two_ray/model.h"
 
 namespace emscape::propagation {
@@ -47,27 +48,6 @@ PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bo
   others.scatter.sea_level_refractivity =
       static_cast<float>(inputs.emitter.atmosphere.sea_level_refractivity);
   return others;
-}
-
-/// Warning bits of a fraction in thousandths.
-unsigned partWarning(double part, int shift) {
-  return unsigned(std::lround(1000 * std::clamp(part, 0.0, 1.0))) << shift;
-}
-double percentOf(unsigned warnings, int shift) {
-  return (warnings >> shift & ((1u << kPePartBits) - 1)) / 10.0;
-}
-
-/// Fraction of the steps of all azimuths that are marched whose ground is taken as steps of a staircase.
-double staircasePartOf(const PePlan& plan, const AzimuthMarch& march) {
-  double part = 0, whole = 0;
-  for (int a = 0; a < plan.azimuths; ++a) {
-    const double length_m = march.rangesOf(a) * plan.cells.range_step_m;
-    const int steps = std::min(int(length_m / plan.grid.range_step_m), int(march.ground_steps) - 1);
-    part += steps * staircasePart(march.ground_msl_m.data() + std::size_t(a) * march.ground_steps, steps,
-                                  plan.grid.range_step_m, plan.grid.maxSine(), plan.grid.slope_part);
-    whole += steps;
-  }
-  return whole > 0 ? part / whole : 0;
 }
 
 /// True if the air has an evaporation duct somewhere.
@@ -232,7 +212,7 @@ struct OtherColumn {
 /// A march along one path.
 struct PathMarch {
   double factor_db = 0;
-  double staircase_part = 0;
+  unsigned warnings = 0;
   std::string text;
 };
 
@@ -280,8 +260,10 @@ PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const 
     if (has_terrain) {
       std::vector<float> ground_msl_m = evenGround(profile, grid.range_step_m, steps);
       path.ground_msl_m.assign(ground_msl_m.begin(), ground_msl_m.end());
-      found.staircase_part =
-          staircasePart(ground_msl_m.data(), steps, grid.range_step_m, grid.maxSine(), grid.slope_part);
+      found.warnings = staircaseWarning(grid, [&](const MarchGrid& other) {
+        return staircasePart(ground_msl_m.data(), steps, other.range_step_m, other.maxSine(),
+                             other.slope_part);
+      });
       const std::vector<float> cover_m = evenCover(profile, grid.range_step_m, steps);
       if (!cover_m.empty()) separateSea(ground_msl_m, cover_m.data());
       path.air = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), grid.range_step_m);
@@ -338,47 +320,6 @@ InputFaults checkPe(const EmitterInputs& inputs) {
   return faults;
 }
 
-std::vector<std::string> peWarningMessages(unsigned warnings) {
-  std::vector<std::string> messages;
-  if (warnings & kPePointwiseAir) {
-    messages.emplace_back(
-        "profiles of the air with different numbers of levels are interpolated at each height: halfway "
-        "between two ducts there are two faint ones");
-  }
-  if (warnings & kPeDuctOverLand) {
-    messages.emplace_back(
-        "the evaporation duct is left out over land (above mean sea level, or a 'ground' that is not water)");
-  }
-  if (warnings & kPeProfileEnds) {
-    messages.emplace_back(
-        "the profile of the air ends below the antenna or the top of the field: above it the air is "
-        "standard");
-  }
-  if (warnings & kPeNearObstacle) {
-    messages.emplace_back(
-        "ground rises above the ray within two range steps of an end, where the march hardly resolves it: "
-        "the "
-        "loss may be wrong by 20 dB and more, and differ as much with the ends exchanged; compare with "
-        "'diffraction'");
-  }
-  const double behind_percent = percentOf(warnings, kPeBehindShift);
-  if (behind_percent >= 10) {
-    messages.push_back(fmt::format(
-        "ground above the equation's largest angle ends {:.0f} % of its marches' length; behind it "
-        "'diffraction' applies; a larger 'max_angle_deg' reaches further",
-        behind_percent));
-  }
-  const double staircase_percent = percentOf(warnings, kPeStaircaseShift);
-  if (staircase_percent > 0) {
-    messages.push_back(
-        fmt::format("{:.1f} % of the ground is steeper or more sharply bent than the band of the equation "
-                    "holds, and taken as steps of a staircase; a 'max_angle_deg' of 1.5 times the slopes, at "
-                    "most {:.3g}, holds them",
-                    staircase_percent, kPeAngle.max));
-  }
-  return messages;
-}
-
 std::vector<ModelChoice> peChoices(const PathInputs& inputs, const RadialInputs& radials) {
   return planMarch(inputs, radials).choices;
 }
@@ -405,7 +346,7 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
                            plan.max_angle_rad);
   if (radials.has_terrain) {
     excess.warnings |= partWarning(1 - endBehindSteepGround(excess.others, plan, field), kPeBehindShift);
-    excess.warnings |= partWarning(staircasePartOf(plan, march), kPeStaircaseShift);
+    excess.warnings |= staircaseWarning(plan, march);
   }
   excess.others.min_range_m = static_cast<float>(plan.min_range_m);
   if (!cells.are_points) {
@@ -426,7 +367,7 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   excess.range_step_m = static_cast<float>(cells.range_step_m);
   excess.bottom_m = static_cast<float>(cells.bottom_msl_m);
   excess.height_step_m = static_cast<float>(cells.height_step_m);
-  excess.top_m = static_cast<float>(plan.top_m);
+  excess.top_msl_m = static_cast<float>(plan.top_msl_m);
   const bool over_land = radials.has_terrain
                              ? std::any_of(march.ground_msl_m.begin(), march.ground_msl_m.end(),
                                            [](float ground_msl_m) { return ground_msl_m > 0; })
@@ -477,7 +418,7 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       const PathMarch march = marchPath(inputs, column, member, automatic.grid, has_terrain);
       losses_db.push_back(static_cast<float>(-march.factor_db));
       march_text = march.text;
-      path.addWarnings(partWarning(march.staircase_part, kPeStaircaseShift));
+      path.addWarnings(march.warnings);
     }
     if (has_terrain && hasNearObstacle(profile, inputs.site.height_msl_m, double(end_msl_m), column.range_m,
                                        automatic.grid.range_step_m))

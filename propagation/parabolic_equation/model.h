@@ -14,7 +14,6 @@ namespace emscape::propagation {
 
 std::vector<Setting> peSettings();
 InputFaults checkPe(const EmitterInputs& inputs);
-std::vector<std::string> peWarningMessages(unsigned warnings);
 std::vector<ModelChoice> peChoices(const PathInputs& inputs, const RadialInputs& radials);
 /// Excess of an emitter's field without its tables, and the marches that compute them.
 struct PeField {

@@ -144,10 +144,16 @@ void planCells(const RadialInputs& radials, PeCells kept, PePlan& plan) {
   cells.overlap = steps >= 2 && !cells.are_points;
   cells.range_step_m = plan.grid.range_step_m * std::max(1.0, std::floor(steps / 2));
   cells.ranges = int(std::ceil(radials.farthest_m / cells.range_step_m)) + 1;
-  const double lowest_m = radials.above_ground ? 0 : radials.lowest_ground_msl_m;
-  plan.top_m = lowest_m + kUsablePart * plan.grid.usableTop_m();
-  const double highest_m = std::min(radials.highest_m, plan.top_m);
-  const double bottom_m = std::min(radials.lowest_m, plan.top_m - radials.height_step_m);
+  // Below this height rays pass the lowest ground below the absorber, too.
+  const double top_m = kUsablePart * plan.grid.usableTop_m();
+  plan.top_msl_m = radials.lowest_ground_msl_m + top_m;
+  double highest_m = std::min(radials.highest_m, plan.top_msl_m), last_m = plan.top_msl_m;
+  if (radials.above_ground) {
+    const bool are_extended = radials.highest_m + radials.highest_ground_msl_m > plan.top_msl_m;
+    highest_m = are_extended ? top_m : radials.highest_m;  // rays cross the top above any ground
+    last_m = top_m;
+  }
+  const double bottom_m = std::min(radials.lowest_m, last_m - radials.height_step_m);
   const double least_m = (highest_m - bottom_m) / (kMaxHeights - 2);
   const bool are_between = !radials.above_ground && !radials.are_level;
   cells.height_step_m = std::max(radials.height_step_m / (are_between ? 5 : 1), least_m);
@@ -250,7 +256,8 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
   max_angle_rad = planAngle_rad(emitter, needs, height_m, angle_why);
   if (!needs.is_single && settings.top_m <= 0) {
     const int intervals = needs.post_spacing_m > 0 ? kTerrainIntervals : kPlainIntervals;
-    height_m = std::max(height_m, std::min(needs.wanted_m, affordable_m(emitter, max_angle_rad, intervals)));
+    const double affordable = affordable_m(emitter, max_angle_rad, intervals) * (1 - 1e-9);
+    height_m = std::max(height_m, std::min(needs.wanted_m, affordable));
   }
   if (height_m < needs.required_m) {
     throw Error(
@@ -352,7 +359,8 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   const double highest_m = std::max(radials.highest_ground_msl_m, source_msl_m);
   DomainNeeds needs;
   needs.required_m = kClear * (highest_m - lowest_m) + kMargin_m;
-  needs.wanted_m = radials.highest_m + 2 * radials.height_step_m - (radials.above_ground ? 0 : lowest_m);
+  needs.wanted_m = radials.highest_m + 2 * radials.height_step_m - lowest_m +
+                   (radials.above_ground ? radials.highest_ground_msl_m : 0);
   needs.post_spacing_m = radials.has_terrain ? inputs.post_spacing_m : 0;
   needs.farthest_m = radials.farthest_m;
   needs.spacing_m = radials.spacing_m;
@@ -379,12 +387,10 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
     return radToDeg(bandEdgeWidth_rad(half_wavelength_m, range_m));
   };
   plan.choices.push_back(
-      {"extent",
-       fmt::format(
-           "from {:.4g} m, to {:.4g} m above {}, up to the largest angle less {:.2g} degrees at 1 km, "
-           "{:.2g} at 10 km (the band's edge diffracts): elsewhere other models apply",
-           plan.min_range_m, plan.top_m, plan.cells.above_ground ? "the ground" : "mean sea level",
-           blurred_deg(1e3), blurred_deg(1e4))});
+      {"extent", fmt::format("from {:.4g} m, to {:.4g} m above mean sea level, up to the largest angle less "
+                             "{:.2g} degrees at 1 km, "
+                             "{:.2g} at 10 km (the band's edge diffracts): elsewhere other models apply",
+                             plan.min_range_m, plan.top_msl_m, blurred_deg(1e3), blurred_deg(1e4))});
   const auto members = double(plan.air.size());
   const double lanes = kStepLanes * std::ceil(double(plan.azimuths) / kStepLanes);
   const double marched = plan.ranges.empty() ? lanes * plan.cells.ranges

@@ -98,7 +98,7 @@ struct PePlan {
   double first_azimuth_rad = 0, azimuth_step_rad = 0;
   double max_angle_rad = 0;
   double min_range_m = 0;  ///< at shorter ranges other models are used
-  double top_m = 0;        ///< datum as the cells' heights; above it: extended along the ray
+  double top_msl_m = 0;    ///< above it: extended along the ray
   std::vector<ModelChoice> choices;
 
   double azimuth_rad(int i) const { return first_azimuth_rad + i * azimuth_step_rad; }

@@ -12,6 +12,7 @@
 #include "propagation/p528/p528.h"
 #include "propagation/parabolic_equation/model.h"
 #include "propagation/parabolic_equation/plan.h"
+#include "propagation/parabolic_equation/warnings.h"
 #include "propagation/registry/model_info.h"
 #include "propagation/two_ray/model.h"
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "emscape/emfield/link/path_budget.h"
+#include "propagation/parabolic_equation/march/march_step.h"
+#include "propagation/parabolic_equation/warnings.h"
 #include "scenario/antenna/shapes.h"
 #include "tests/emfield/parabolic_samples.h"
 #include "tests/support/errors.h"
@@ -194,7 +196,7 @@ TEST(ParabolicField, AnEnsembleHasTheMeanPowerOrAQuantile) {
 // An antenna above the heights that are wanted raises the domain.
 TEST(ParabolicField, HoldsAnAntennaAboveTheField) {
   const auto scenario = around(1e9, 3000, {20e3, 300, 200}, {20, 3, 10});
-  EXPECT_GT(Made(*scenario, nullptr).plan.top_m, 3000);
+  EXPECT_GT(Made(*scenario, nullptr).plan.top_msl_m, 3000);
   const auto volume = solve(scenario);
   for (const float power_dbwm2 : volume->values) EXPECT_TRUE(std::isfinite(power_dbwm2));
 }
@@ -342,6 +344,34 @@ TEST(ParabolicField, CountsGroundThatIsTooSteep) {
   FieldSolver solver(scenario, terrain, {});
   solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
   EXPECT_THAT(solver.warnings(), ::testing::Contains(::testing::HasSubstr("taken as steps of a staircase")));
+}
+
+// Ground of 8 degrees up and down.
+TEST(ParabolicField, NamesTheLeastAngleThatHoldsTheGround) {
+  constexpr int kSteps = 200;
+  std::vector<float> ground_m;
+  for (int i = 0; i <= kSteps; ++i) ground_m.push_back(i % 20 < 10 ? 7.0f * (i % 20) : 7.0f * (20 - i % 20));
+  propagation::MarchGrid grid;
+  grid.frequency_hz = 3e9;
+  grid.intervals = 4096;
+  grid.range_step_m = 50;
+  grid.slope_part = propagation::kPeMaxSlopePart;
+  const auto withAngle = [&](double angle_deg) {
+    grid.top_m = grid.intervals * propagation::kPeEvenBand * wavelength_m(grid.frequency_hz) /
+                 (2 * std::sin(degToRad(angle_deg)));
+    return propagation::staircaseWarning(grid, [&](const propagation::MarchGrid& of) {
+      return propagation::staircasePart(ground_m.data(), kSteps, of.range_step_m, of.maxSine(),
+                                        of.slope_part);
+    });
+  };
+  EXPECT_THAT(propagation::peWarningMessages(withAngle(3)),
+              ::testing::ElementsAre(::testing::AllOf(::testing::HasSubstr("100.0 % of the ground"),
+                                                      ::testing::HasSubstr("'max_angle_deg: 13'"))));
+  EXPECT_EQ(withAngle(13), 0u);  // 8 degrees fill 0.4 of the band
+  EXPECT_NE(withAngle(12), 0u);
+  grid.intervals = propagation::kPeMaxIntervals;
+  EXPECT_THAT(propagation::peWarningMessages(withAngle(3)),
+              ::testing::ElementsAre(::testing::HasSubstr("no larger")));
 }
 
 }  // namespace

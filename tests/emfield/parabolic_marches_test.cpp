@@ -45,7 +45,7 @@ std::vector<double> differencesFromSingleMarches(const std::shared_ptr<scenario:
         made.columns.view()[c], static_cast<double>(made.columns.t_m[static_cast<std::size_t>(k)]));
     const FastInverse foot = footInverse(made.station, made.columns.view()[c], 0);
     const auto isEquations = [&](float horizon_rad) {  // alone, without other models
-      return voxel_msl_m <= plan.top_m &&
+      return voxel_msl_m <= plan.top_msl_m &&
              excess.others.equationPart(static_cast<float>(foot.distance_m), static_cast<float>(voxel_msl_m),
                                         terrain ? made.columns.ground_msl_m[c] : 0.0F, horizon_rad) >= 1;
     };
@@ -210,7 +210,7 @@ struct MadeCells {
     excess.first_range_m = 100;
     excess.range_step_m = 100;
     excess.height_step_m = 10;
-    excess.top_m = 30;
+    excess.top_msl_m = 30;
     excess.others.max_angle_rad = 1;
     excess.others.min_range_m = 1;
   }
@@ -218,7 +218,10 @@ struct MadeCells {
   float at(double azimuth, double range) const {
     propagation::ExcessColumn column;
     column.range_m = 100 + 100 * range;
-    return excess.equationAt(column, excess.azimuthsAt(azimuth * excess.azimuth_step_rad), 15, 0).equation_db;
+    return excess
+        .equationAt(column, excess.azimuthsAt(azimuth * excess.azimuth_step_rad), 15, 0,
+                    [](float) { return 0.0F; })
+        .equation_db;
   }
 };
 

@@ -101,8 +101,8 @@ Seam seamOf(double frequency_hz, double height_m) {
     propagation::ExcessColumn column;
     column.range_m = range_m;
     for (float at_m = 22.5F; at_m < 700; at_m += 5) {
-      const propagation::PeLoss loss =
-          excess.equationAt(column, excess.azimuthsAt(column.azimuth_rad), at_m, 0);
+      const propagation::PeLoss loss = excess.equationAt(column, excess.azimuthsAt(column.azimuth_rad), at_m,
+                                                         0, [](float) { return 0.0F; });
       if (loss.equation_part <= 0 || loss.equation_part >= 1) continue;
       column.height_msl_m = &at_m;
       column.count = 1;
@@ -315,7 +315,7 @@ TEST(ParabolicField, DominantModelMarksMarchAndDiffraction) {
       const std::string& name =
           labels.at(static_cast<std::size_t>(std::lround(testing::valueAt(*model, i, 1, k))));
       ++seen[name];
-      const bool is_high = height_m > excess.top_m;
+      const bool is_high = height_m > excess.top_msl_m;
       EXPECT_TRUE(name != "two_ray" || !is_equation) << i << ", " << k;
       EXPECT_TRUE(name != "parabolic_equation" || (is_equation && !is_high)) << i << ", " << k;
       EXPECT_TRUE(name != "extended_optics" || (is_equation && is_high)) << i << ", " << k;

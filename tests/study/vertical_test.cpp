@@ -88,6 +88,49 @@ TEST(Vertical, SLOW_ParabolicEquationIsNearProfile) {
   EXPECT_LT(differences_db[differences_db.size() * 9 / 10], 4.0);  // nulls
 }
 
+/// A mast in a hollow of the hills of Jacksboro, by parabolic_equation at 5 GHz.
+std::shared_ptr<scenario::Scenario> mastInAHollow() {
+  auto scenario = std::make_shared<scenario::Scenario>(*jacksboro());
+  constexpr int kMast = 2;
+  scenario::Emitter& emitter = scenario->emitters[kMast];
+  emitter.frequency_hz = 5e9;
+  emitter.polarization = propagation::Polarization::horizontal;
+  emitter.propagation.model = propagation::PropagationModel::parabolic_equation;
+  emitter.propagation.parabolic_equation.floor_db = -120;
+  scenario::SitePosition& site =
+      scenario->platforms[static_cast<std::size_t>(emitter.platform)].track[0].position;
+  site.latitude_deg = 36.3444;
+  site.longitude_deg = -84.2534;
+  site.height_agl_m = 10;
+  return scenario;
+}
+
+// The ray was taken at the top of the march above other ground than its own: 120 dB were lost.
+TEST(Vertical, ParabolicEquationFollowsRaysHighAboveLowGround) {
+  const std::shared_ptr<scenario::Scenario> scenario = mastInAHollow();
+  constexpr int kMast = 2;
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
+  VerticalRequest request = small(kMast, HeightReference::mean_sea_level);
+  request.quantity = scenario::Quantity::power_density_dbwm2;
+  request.threshold = -40;
+  request.azimuths_deg = {152};
+  request.range_m = 17000;
+  const VerticalDiagram marched = computeVertical(scenario, terrain, request, {});
+  scenario->emitters[kMast].propagation.model = propagation::PropagationModel::free_space;
+  const VerticalDiagram free_space = computeVertical(scenario, terrain, request, {});
+  int compared = 0;
+  for (std::size_t k = 0; k < 40; ++k) {
+    for (std::size_t i = 35; i < 50; ++i) {
+      const double elevation_deg = marched.elevation_deg(marched.ranges_m[i], marched.heights_m[k]);
+      const float value = marched.cuts[0].values[k * 50 + i];
+      if (std::isnan(value) || elevation_deg < 5 || elevation_deg > 10) continue;
+      EXPECT_NEAR(value, free_space.cuts[0].values[k * 50 + i], 12.0) << elevation_deg << " deg, " << i;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 100);
+}
+
 TEST(Vertical, ValueEqualsProfile) {
   const auto scenario = jacksboro();
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
