@@ -157,18 +157,31 @@ void requireClearSouth(const std::string& coordinates) {
                                             coordinates, zone.back(), written("north"), written("south")));
 }
 
+/// True if a word has more than degrees, minutes and seconds: GeographicLib writes beyond its arrays there.
+bool hasTooManyParts(const std::string& text) {
+  constexpr int kParts = 3;
+  int marks = 0;
+  for (const char c : text) {
+    if (c == ' ' || c == ',') marks = 0;
+    marks += std::string("dD'\":").find(c) != std::string::npos ? 1 : 0;
+    if (marks > kParts) return true;
+  }
+  return false;
+}
+
 /// None if it is not a position.
 std::optional<ParsedPosition> parseHorizontal(const std::string& text) {
   const std::string reference = mgrsReference(text);
   const std::string coordinates = reference.empty() ? joinedCoordinates(text) : reference;
   // One word alone would be a zone of MGRS: an area of hundreds of kilometres.
   if (reference.empty() && coordinates.find_first_of(" ,") == std::string::npos) return std::nullopt;
+  if (hasTooManyParts(coordinates)) return std::nullopt;
   if (reference.empty()) requireClearSouth(coordinates);
   try {
     const GeographicLib::GeoCoords read(coordinates);
     if (!std::isfinite(read.Latitude()) || !std::isfinite(read.Longitude())) return std::nullopt;
     return ParsedPosition{read.Latitude(), wrapLongitude_deg(read.Longitude()), {}};
-  } catch (const std::exception&) {  // GeographicErr, and std::length_error for some texts with four parts
+  } catch (const GeographicLib::GeographicErr&) {
     return std::nullopt;
   }
 }
@@ -250,14 +263,16 @@ std::optional<double> parseCoordinate(const std::string& text, bool is_latitude)
   }
   // Two numbers without a direction are a position, and GeographicLib would add signed ones.
   const bool has_direction = !joined.empty() && (isHemisphere(joined.front()) || isHemisphere(joined.back()));
-  if ((colons == 1 && !has_direction) || joined.find_first_of("+-", 1) != std::string::npos)
+  if ((colons == 1 && !has_direction) || joined.find_first_of("+-", 1) != std::string::npos ||
+      hasTooManyParts(joined)) {
     return std::nullopt;
+  }
   try {
     DMS::flag kind = DMS::NONE;
     const double degrees = DMS::Decode(joined, kind);
     const bool is_other = kind == (is_latitude ? DMS::LONGITUDE : DMS::LATITUDE);
     return is_other || !std::isfinite(degrees) ? std::nullopt : std::optional(static_cast<double>(degrees));
-  } catch (const std::exception&) {  // GeographicErr, and std::length_error for some texts with four parts
+  } catch (const GeographicLib::GeographicErr&) {
     return std::nullopt;
   }
 }

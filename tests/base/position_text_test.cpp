@@ -27,8 +27,8 @@ TEST(PositionText, OneCoordinateIsReadInEachForm) {
        {"-84.2", "84.2W", "84.2°W", "W84.2", "84°12'W", "84°12'00.0\"W", "84d12'W", "-84 12 0"})
     EXPECT_NEAR(parseCoordinate(text, false).value_or(NAN), -84.2, 1e-9) << text;
   EXPECT_NEAR(parseCoordinate("44 24 30", true).value_or(NAN), 44 + 24.5 / 60, 1e-9);
-  for (const char* text :
-       {"", "west", "84.2N", "44.4 -71.2", "44 71", "44.4, -71.2", "84 kW", "39d3  3   3  3  3   3"})
+  for (const char* text : {"", "west", "84.2N", "44.4 -71.2", "44 71", "44.4, -71.2", "84 kW",
+                           "39d3  3   3  3  3   3", "1:2:3:4:5", "1d2:3:4:5:6N"})
     EXPECT_FALSE(parseCoordinate(text, false)) << text;
 }
 
@@ -78,7 +78,7 @@ TEST(ParsePosition, ReadsAHeightAfterAnyForm) {
 TEST(ParsePosition, RefusesOtherTexts) {
   for (const char* const text :
        {"", "  ", "36.5", "91,0", "36.5,-84.2,x", "36.5,-84.2,150,3", "north", "36.5N 84.2N", "16S", "16SGF",
-        "16S GF", "nan,nan", "99SGF1234567890", "36.5;84.2", "36.5, 8\f4.2", "\v"}) {
+        "16S GF", "nan,nan", "1:2:3:4:5 6:7:8:9:10", "99SGF1234567890", "36.5;84.2", "36.5, 8\f4.2", "\v"}) {
     EXPECT_EQ(test::errorOf([&] { parsePosition(text); }, ErrorCode::usage).find("is not a position") !=
                   std::string::npos,
               true)
