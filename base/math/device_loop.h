@@ -22,7 +22,7 @@
 
 namespace emscape {
 
-/// 1 / a and sqrt(a) for normal a or 0. On the device one instruction, within 2 units in the last place.
+/// 1 / a for normal a or 0. On the device one instruction, within 2 units in the last place.
 EMSCAPE_HD inline float approximateReciprocal(float a) {
 #if defined(__CUDA_ARCH__)
   float result;
@@ -30,15 +30,6 @@ EMSCAPE_HD inline float approximateReciprocal(float a) {
   return result;
 #else
   return 1.0F / a;
-#endif
-}
-EMSCAPE_HD inline float approximateRoot(float a) {
-#if defined(__CUDA_ARCH__)
-  float result;
-  asm("sqrt.approx.ftz.f32 %0, %1;" : "=f"(result) : "f"(a));
-  return result;
-#else
-  return std::sqrt(a);
 #endif
 }
 /// 1 / sqrt(a), in the same way.

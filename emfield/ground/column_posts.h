@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/math/device_loop.h"
+#include "base/math/device_turn.h"
 #include "emfield/ground/chord_crossings.h"
 #include "emfield/ground/ground_posts.h"
 #include "emscape/base/host_device.h"
@@ -230,7 +231,7 @@ class ColumnPosts {
       const float* line_msl_m = corner_msl_m + static_cast<long long>(first_line) * line_step;
       EMSCAPE_UNROLL_BY(2)
       for (int n = first; n < end; ++n) {
-        const float sum = fmaf(lines.to_root, approximateRoot(fmaxf(fmaf(4 * c2, to_line, square), 0)), c1);
+        const float sum = fmaf(lines.to_root, rootOf(fmaxf(fmaf(4 * c2, to_line, square), 0)), c1);
         float part = (is_first ? 2 * to_line : -sum) * approximateReciprocal(is_first ? sum : 2 * c2);
         part = fminf(fmaxf(part, 0), 1);
         const float at = across.at(part);
@@ -315,7 +316,7 @@ class ColumnPosts {
   static EMSCAPE_HD float partOf(const LineCrossings& of, bool is_first, int line) {
     const float* const c = of.coordinate.c;
     const float to_line = static_cast<float>(line) - c[0];
-    const float sum = fmaf(of.to_root, approximateRoot(fmaxf(fmaf(4 * c[2], to_line, c[1] * c[1]), 0)), c[1]);
+    const float sum = fmaf(of.to_root, rootOf(fmaxf(fmaf(4 * c[2], to_line, c[1] * c[1]), 0)), c[1]);
     const float part = (is_first ? 2 * to_line : -sum) * approximateReciprocal(is_first ? sum : 2 * c[2]);
     return fminf(fmaxf(part, 0), 1);
   }
