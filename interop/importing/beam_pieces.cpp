@@ -108,7 +108,7 @@ std::vector<BeamPiece> piecesOf(const RecordedBeam& beam, const std::vector<Time
   return pieces;
 }
 
-std::vector<Pointing> reduced(std::vector<Pointing> pointings, std::size_t count) {
+std::vector<Pointing> reduced(const std::vector<Pointing>& pointings, std::size_t count) {
   for (double tolerance_deg = 0.1;; tolerance_deg *= 2) {
     std::vector<Pointing> result = joined(pointings, tolerance_deg);
     if (result.size() <= count || tolerance_deg > 360) return result;

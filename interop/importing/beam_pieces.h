@@ -33,6 +33,6 @@ std::vector<BeamPiece> piecesOf(const RecordedBeam& beam, const std::vector<Time
 
 /// Pointings with neighbours joined that differ by less than a tolerance, which grows from 0.1 degree until
 /// there are at most `count`.
-std::vector<Pointing> reduced(std::vector<Pointing> pointings, std::size_t count);
+std::vector<Pointing> reduced(const std::vector<Pointing>& pointings, std::size_t count);
 
 }  // namespace emscape::interop

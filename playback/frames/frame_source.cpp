@@ -288,10 +288,12 @@ double FrameSource::firstTime_s() const {
   return firstPresentTime_s(*loaded->scenario, times_s);
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): implementations keep it
 void FrameSource::setScenario(std::shared_ptr<const scenario::Scenario> /*scenario*/) {
   throw Error(ErrorCode::usage, name() + ": volumes without a scenario cannot be edited");
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): implementations keep it
 void FrameSource::setPoses(PosesPtr poses) {
   if (poses) throw Error(ErrorCode::usage, name() + ": the fields of files do not move with platforms");
 }

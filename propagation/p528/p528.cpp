@@ -129,7 +129,7 @@ P528Terminal p528Terminal(const P528Atmosphere& atmosphere, double height_m) {
   return terminal;
 }
 
-P528Curve::P528Curve(std::shared_ptr<const P528Atmosphere> atmosphere, double frequency_hz,
+P528Curve::P528Curve(const std::shared_ptr<const P528Atmosphere>& atmosphere, double frequency_hz,
                      double first_height_m, double second_height_m, bool vertical_polarization)
     : P528Curve(atmosphere, frequency_hz, p528Terminal(*atmosphere, first_height_m),
                 p528Terminal(*atmosphere, second_height_m), vertical_polarization) {}
