@@ -50,8 +50,8 @@ class P528Curve {
   /// @param atmosphere  of the same frequency; curves of several heights share it
   /// @param height_m    of both antennas above the smooth earth (m), in any order
   /// @throws Error (bad_input) for a frequency or a height outside kP528Frequency, kP528Height
-  P528Curve(const std::shared_ptr<const P528Atmosphere>& atmosphere, double frequency_hz, double first_height_m,
-            double second_height_m, bool vertical_polarization = false);
+  P528Curve(const std::shared_ptr<const P528Atmosphere>& atmosphere, double frequency_hz,
+            double first_height_m, double second_height_m, bool vertical_polarization = false);
   /// The same between terminals of that atmosphere.
   P528Curve(std::shared_ptr<const P528Atmosphere> atmosphere, double frequency_hz, const P528Terminal& first,
             const P528Terminal& second, bool vertical_polarization = false);
