@@ -3,7 +3,7 @@
 /// The first pass over a path's posts gives the steepest slope from the transmitter, and the slope of the
 /// line of sight above which every post is clear: nu of a post falls linearly with the receiver's height.
 /// Only receivers below that, or not clear of the smooth earth, are computed; the others have no loss. Few
-/// receivers, as those of a map, take one pass. Of many the first pass keeps the posts that the others need.
+/// receivers, as those of a map, take one pass. Of many the first pass keeps the posts that may decide.
 /// The same formulas as propagation/diffraction/excess.cpp.
 #pragma once
 
@@ -80,29 +80,51 @@ EMSCAPE_NOINLINE EMSCAPE_HD inline float smoothEarthNu(const DiffractionModel<fl
   });
 }
 
-/// Posts of a path among which are those of all maxima of the receivers at or above the lowest one.
+/// A post seen from the transmitter. Heights are above it; "plain" ones leave out the earth's bulge.
+struct SeenPost {
+  float range_m, plain_m, height_m;
+  float root;        ///< 1 / sqrt(d1 d2)
+  float per_beyond;  ///< 1 / d2
+
+  EMSCAPE_HD SeenPost(const PathPost& post, float distance_m, float base_msl_m, float tx_m,
+                      float half_curvature)
+      : range_m(post.range_m), plain_m(post.height_msl_m - base_msl_m - tx_m) {
+    const float product = range_m * (distance_m - range_m);
+    root = approximateReciprocalRoot(product);
+    per_beyond = root * root * range_m;
+    height_m = fmaf(half_curvature, product, plain_m);
+  }
+};
+
+/// Posts of a path among which are those of all maxima of the receivers from a lowest to a highest one.
 ///
 /// Each measure of a post seen from a receiver is linear in the slope of the line of sight, and falls faster
 /// for farther posts. A post that does not exceed all nearer ones for the lowest receiver therefore exceeds
-/// none of them for a higher one. Only such records are kept, of each measure, and fewer for those above some
-/// receivers that are done.
+/// none of them for a higher one, and one that does not exceed all farther ones for the highest receiver none
+/// of those for a lower one. Only posts that do both, each in some measure, are kept.
 class CandidatePosts {
  public:
-  static constexpr int kMost = 128;
+  static constexpr int kMost = 224;
 
-  /// Measures of the posts so far, seen from the lowest receiver.
+  /// The largest measures of the posts so far, seen from a receiver.
+  /// @tparam kBackwards  from the farthest post to the nearest one
+  template <bool kBackwards>
   class Records {
    public:
+    EMSCAPE_HD explicit Records(float slope) : slope_(slope) {}
+
     /// @tparam kPlain  also those without the earth's bulge
     /// @return true if the next post exceeds one
     template <bool kPlain>
-    EMSCAPE_HD bool add(const PathPost& post, float line, float plain_line, float root) {
-      if (post.range_m < last_m_) *this = {};  // posts come in runs of increasing range
+    EMSCAPE_HD bool add(const SeenPost& post) {
+      if (kBackwards ? post.range_m > last_m_ : post.range_m < last_m_)  // posts come in runs
+        *this = Records(slope_);
       last_m_ = post.range_m;
-      const float per_beyond = root * root * post.range_m;
-      const bool exceeds = exceed(line * per_beyond, rx_slope_) | exceed(line * root, nearest_);
+      const float line = fmaf(-slope_, post.range_m, post.height_m);
+      const bool exceeds = exceed(line * post.per_beyond, rx_slope_) | exceed(line * post.root, nearest_);
       if (!kPlain) return exceeds;
-      return exceeds | exceed(plain_line * per_beyond, plain_rx_slope_) | exceed(plain_line, plain_m_);
+      const float plain_line = fmaf(-slope_, post.range_m, post.plain_m);
+      return exceeds | exceed(plain_line * post.per_beyond, plain_rx_slope_) | exceed(plain_line, plain_m_);
     }
 
    private:
@@ -112,23 +134,41 @@ class CandidatePosts {
       return exceeds;
     }
 
-    float last_m_ = 0;
+    float slope_, last_m_ = 0;
     float rx_slope_ = -HUGE_VALF, nearest_ = -HUGE_VALF, plain_rx_slope_ = -HUGE_VALF, plain_m_ = -HUGE_VALF;
   };
 
-  EMSCAPE_HD void clear() { count_ = 0; }
+  EMSCAPE_HD void clear() {
+    first_ = 0;
+    end_ = 0;
+  }
   EMSCAPE_HD void add(const PathPost& post) {
-    if (count_ < kMost) posts_[count_] = post;
-    ++count_;
+    if (end_ < kMost) posts_[end_] = post;
+    ++end_;
   }
   /// False if there was no room for all: they are incomplete.
-  EMSCAPE_HD bool areComplete() const { return count_ <= kMost; }
-  EMSCAPE_HD int count() const { return count_; }
-  EMSCAPE_HD const PathPost& operator[](int i) const { return posts_[i]; }
+  EMSCAPE_HD bool areComplete() const { return end_ <= kMost; }
+  EMSCAPE_HD int count() const { return end_ - first_; }
+  /// Calls visit(PathPost) for each of them, which are complete.
+  template <class Visit>
+  EMSCAPE_HD void each(const Visit& visit) const {
+    EMSCAPE_UNROLL_BY(1)
+    for (int i = first_; i < end_; ++i) visit(posts_[i]);
+  }
+  /// Keeps those for which is_needed(PathPost), called from the last one to the first one.
+  template <class IsNeeded>
+  EMSCAPE_HD void keepBackwards(const IsNeeded& is_needed) {
+    first_ = end_;
+    EMSCAPE_UNROLL_BY(1)
+    for (int i = end_ - 1; i >= 0; --i) {
+      const PathPost post = posts_[i];
+      if (is_needed(post)) posts_[--first_] = post;
+    }
+  }
 
  private:
   PathPost posts_[kMost];
-  int count_ = kMost + 1;  ///< nothing was looked for
+  int first_ = 0, end_ = kMost + 1;  ///< nothing was looked for
 };
 
 /// The receivers over the end of a path. Heights are above the first post unless stated otherwise; "plain"
@@ -157,31 +197,36 @@ class Receivers {
     return DiffractionModel<float>::raised_m(rx_msl_m - base_msl_m_, ground_m_);
   }
 
-  /// The first pass.
-  /// @param lowest_m  of the lowest receiver
-  /// @param rx_m      of receivers whose maxima are found, too
+  /// The pass over all posts.
+  /// @param lowest_m   of the lowest receiver
+  /// @param highest_m  of the highest one
+  /// @param rx_m       of receivers whose maxima are found; without any, the posts for find() are
   /// @return false if terrain is missing along the profile
   template <int kReceivers>
-  EMSCAPE_HD bool survey(float lowest_m, const float* rx_m, Maxima* most) {
+  EMSCAPE_HD bool survey(float lowest_m, float highest_m, const float* rx_m, Maxima* most) {
     const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
     has_earth_ =
         !isClearThroughout(earth, distance_m_, sightLine(earth, distance_m_, tx_m_, lowest_m - ground_m_));
     const float slope = slopeTo(lowest_m);
     const bool for_any = isForAnyLane(has_earth_);  // one loop for all threads
-    return for_any ? pass<kReceivers, true, true>(rx_m, slope, most)
-                   : pass<kReceivers, true, false>(rx_m, slope, most);
-  }
-  /// Finds the maxima of receivers, lowest first.
-  /// @param next_m  of the next receiver; infinity: there is none
-  template <int kReceivers>
-  EMSCAPE_HD void find(const float* rx_m, float next_m, Maxima* most) {
-    const bool in_earth = isInEarth(rx_m[0]) && slopeTo(rx_m[0]) < plain_tx_slope_;
-    if (isForAnyLane(in_earth)) {
-      pass<kReceivers, false, true>(rx_m, slopeTo(next_m), most);
-    } else {
-      pass<kReceivers, false, false>(rx_m, slopeTo(next_m), most);
+    const bool is_known =
+        for_any ? pass<kReceivers, true>(rx_m, slope, most) : pass<kReceivers, false>(rx_m, slope, most);
+    if (kReceivers == 0 && candidates_.areComplete()) {
+      const float clear_m = fmaf(clear_slope_, distance_m_, tx_m_);
+      const float end_slope = isInEarth(clear_m) ? slopeTo(highest_m) : clear_slope_;
+      for_any ? thin<true>(end_slope) : thin<false>(end_slope);
     }
+    return is_known;
   }
+  /// The maxima of receivers, lowest first, from the posts that survey() kept.
+  template <int kReceivers>
+  EMSCAPE_HD void find(const float* rx_m, Maxima* most) const {
+    const bool in_earth = isInEarth(rx_m[0]) && slopeTo(rx_m[0]) < plain_tx_slope_;
+    isForAnyLane(in_earth) ? findAmongCandidates<kReceivers, true>(rx_m, most)
+                           : findAmongCandidates<kReceivers, false>(rx_m, most);
+  }
+  /// False: there are too many posts for find().
+  EMSCAPE_HD bool canFind() const { return candidates_.areComplete(); }
 
   EMSCAPE_HD bool isLossy(float rx_m) const { return slopeTo(rx_m) < clear_slope_ || isInEarth(rx_m); }
 
@@ -196,24 +241,58 @@ class Receivers {
  private:
   EMSCAPE_HD float slopeTo(float rx_m) const { return (rx_m - tx_m_) / distance_m_; }
 
-  /// @tparam kSurvey  finds what is the same for all receivers
-  /// @tparam kEarth   also for the smooth earth
-  /// @param next_slope  of the line of sight to the lowest receiver of further passes
-  template <int kReceivers, bool kSurvey, bool kEarth>
-  EMSCAPE_NOINLINE EMSCAPE_HD bool pass(const float* rx_m, float next_slope, Maxima* most) {
-    constexpr int kRoom = kReceivers > 0 ? kReceivers : 1;
-    constexpr bool kOrdered = kSurvey && kEarth;
-    constexpr bool kBoth = kSurvey && kReceivers > 0;  // it is not known which are below the steepest ray
-    constexpr bool kKeeps = !kBoth;
-    const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
-    const float d = distance_m_, base_msl_m = base_msl_m_, tx_m = tx_m_, half_curvature = half_curvature_;
+  EMSCAPE_HD SeenPost seen(const PathPost& post) const {
+    return {post, distance_m_, base_msl_m_, tx_m_, half_curvature_};
+  }
+
+  /// Maxima of receivers.
+  /// @tparam kEarth  also for the smooth earth
+  /// @tparam kBoth   it is not known which are below the steepest ray
+  template <int kReceivers, bool kEarth, bool kBoth>
+  struct Several {
+    static constexpr int kRoom = kReceivers > 0 ? kReceivers : 1;
     float slope[kRoom], edge[kRoom], nearest[kRoom], plain_rx[kRoom], plain[kRoom];
     bool is_below[kRoom];
-    EMSCAPE_UNROLL
-    for (int j = 0; j < kReceivers; ++j) {
-      slope[j] = slopeTo(rx_m[j]);
-      is_below[j] = slope[j] <= tx_slope_;
+
+    EMSCAPE_HD Several(const Receivers& of, const float* rx_m) {
+      EMSCAPE_UNROLL
+      for (int j = 0; j < kReceivers; ++j) {
+        slope[j] = of.slopeTo(rx_m[j]);
+        is_below[j] = slope[j] <= of.tx_slope_;
+      }
+      clear();
     }
+    EMSCAPE_HD void clear() {
+      EMSCAPE_UNROLL
+      for (int j = 0; j < kReceivers; ++j) edge[j] = nearest[j] = plain_rx[j] = plain[j] = -HUGE_VALF;
+    }
+    EMSCAPE_HD void add(const SeenPost& post, float half_curvature) {
+      EMSCAPE_UNROLL
+      for (int j = 0; j < kReceivers; ++j) {
+        const float above_line = fmaf(-slope[j], post.range_m, post.height_m);
+        const float from_rx = above_line * (kBoth || is_below[j] ? post.per_beyond : post.root);
+        edge[j] = fmaxf(edge[j], from_rx);
+        if constexpr (kBoth) nearest[j] = fmaxf(nearest[j], above_line * post.root);
+        if constexpr (kEarth) {  // read of those below the steepest plain ray, and so below the steepest one
+          plain_rx[j] = fmaxf(plain_rx[j], from_rx - half_curvature * post.range_m);
+          plain[j] = fmaxf(plain[j], fmaf(-slope[j], post.range_m, post.plain_m));
+        }
+      }
+    }
+    EMSCAPE_HD void get(float tx_slope, Maxima* most) const {
+      EMSCAPE_UNROLL
+      for (int j = 0; j < kReceivers; ++j)
+        most[j] = {kBoth && !(slope[j] <= tx_slope) ? nearest[j] : edge[j], plain_rx[j], plain[j]};
+    }
+  };
+
+  /// @tparam kEarth  also for the smooth earth
+  /// @param lowest_slope  of the line of sight to the lowest receiver
+  template <int kReceivers, bool kEarth>
+  EMSCAPE_NOINLINE EMSCAPE_HD bool pass(const float* rx_m, float lowest_slope, Maxima* most) {
+    constexpr bool kKeeps = kReceivers == 0;
+    const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
+    const float d = distance_m_, base_msl_m = base_msl_m_, half_curvature = half_curvature_;
     float tx, clear, plain_tx, unknown, v1, v2, sea_m;
     PathPost before{};
     float v1_rest, v2_rest;  // of the sums' rounding
@@ -233,78 +312,59 @@ class Receivers {
       before = to;
     };
     bool is_whole;
-    const int candidates = !kSurvey && candidates_.areComplete() ? candidates_.count() : -1;
-    const float nearest_m = kSurvey && !kOrdered ? nearestOfAll_m(next_slope, clearance) : 0;
-    CandidatePosts::Records records;
+    const float nearest_m = kEarth ? 0 : nearestOfAll_m(lowest_slope, clearance);
+    Several<kReceivers, kEarth, true> several(*this, rx_m);
+    CandidatePosts::Records<false> records(lowest_slope);
     do {
       tx = clear = plain_tx = -HUGE_VALF;
       unknown = base_msl_m - base_msl_m + (ground_m_ - ground_m_);
       v1 = v2 = v1_rest = v2_rest = sea_m = 0;
       before = {0, base_msl_m};
-      records = {};
-      if constexpr (kKeeps) candidates_.clear();
-      EMSCAPE_UNROLL
-      for (int j = 0; j < kReceivers; ++j) edge[j] = nearest[j] = plain_rx[j] = plain[j] = -HUGE_VALF;
-      const auto visit = [&](const PathPost& post) {
-        const float range = post.range_m, beyond = d - range, product = range * beyond;
-        const float root = approximateReciprocalRoot(product);
-        const float above = post.height_msl_m - base_msl_m - tx_m;
-        const float bulged = fmaf(half_curvature, product, above);
-        if constexpr (kSurvey) {
-          unknown += post.height_msl_m - post.height_msl_m;
-          const float per_range = beyond * root;
-          tx = fmaxf(tx, per_range * (bulged * root));
-          clear = fmaxf(clear, per_range * fmaf(bulged, root, clearance));
-          if constexpr (kEarth) {
-            plain_tx = fmaxf(plain_tx, per_range * (above * root));
-            addToTrend(post);
-          }
+      several.clear();
+      if constexpr (kKeeps) {
+        records = CandidatePosts::Records<false>(lowest_slope);
+        candidates_.clear();
+      }
+      is_whole = posts_.each<kEarth>(nearest_m, [&](const PathPost& post) {
+        unknown += post.height_msl_m - post.height_msl_m;
+        const SeenPost seen = this->seen(post);
+        const float per_range = (d - seen.range_m) * seen.root;
+        tx = fmaxf(tx, per_range * (seen.height_m * seen.root));
+        clear = fmaxf(clear, per_range * fmaf(seen.height_m, seen.root, clearance));
+        if constexpr (kEarth) {
+          plain_tx = fmaxf(plain_tx, per_range * (seen.plain_m * seen.root));
+          addToTrend(post);
         }
-        const float per_beyond = root * root * range, bend = half_curvature * range;
         if constexpr (kKeeps) {
-          const bool is_record = records.add<kEarth>(post, fmaf(-next_slope, range, bulged),
-                                                     fmaf(-next_slope, range, above), root);
-          if (is_record) candidates_.add(post);
+          if (records.template add<kEarth>(seen)) candidates_.add(post);
         }
-        EMSCAPE_UNROLL
-        for (int j = 0; j < kReceivers; ++j) {
-          const float above_line = fmaf(-slope[j], range, bulged);
-          const float from_rx = above_line * (kBoth || is_below[j] ? per_beyond : root);
-          edge[j] = fmaxf(edge[j], from_rx);
-          if constexpr (kBoth) nearest[j] = fmaxf(nearest[j], above_line * root);
-          if constexpr (kEarth) {  // read of those below the steepest plain ray, and so below the
-                                   // steepest one
-            const float plain_above = fmaf(-slope[j], range, above);
-            plain_rx[j] = fmaxf(plain_rx[j], from_rx - bend);
-            plain[j] = fmaxf(plain[j], plain_above);
-          }
-        }
-      };
-      is_whole = candidates >= 0 || posts_.each<kOrdered>(nearest_m, visit);
-      for (int i = 0; i < candidates; ++i) {
-        const PathPost post = candidates_[i];  // may be overwritten
-        visit(post);
-      }
+        several.add(seen, half_curvature);
+      });
     } while (!is_whole);
-    if constexpr (kSurvey) {
-      tx_slope_ = tx;
-      clear_slope_ = clear;
-      plain_tx_slope_ = plain_tx;
-      if constexpr (kEarth) {
-        addToTrend({d, ground_m_ + base_msl_m});
-        const propagation::TerrainSums sums{static_cast<double>(v1), static_cast<double>(v2)};
-        trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(d)));
-        trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(d)));
-        if (task_.model.model.sea_by_height) sea_fraction_ = sea_m / d;
-      }
+    tx_slope_ = tx;
+    clear_slope_ = clear;
+    plain_tx_slope_ = plain_tx;
+    if constexpr (kEarth) {
+      addToTrend({d, ground_m_ + base_msl_m});
+      const propagation::TerrainSums sums{static_cast<double>(v1), static_cast<double>(v2)};
+      trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(d)));
+      trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(d)));
+      if (task_.model.model.sea_by_height) sea_fraction_ = sea_m / d;
     }
-    EMSCAPE_UNROLL
-    for (int j = 0; j < kReceivers; ++j) {
-      most[j].edge = kBoth && !(slope[j] <= tx) ? nearest[j] : edge[j];
-      most[j].plain_rx_slope = plain_rx[j];
-      most[j].plain_height_m = plain[j];
-    }
+    several.get(tx, most);
     return unknown == 0;
+  }
+  /// Leaves out the candidates that exceed no farther ones for a receiver at that slope and those below.
+  template <bool kEarth>
+  EMSCAPE_NOINLINE EMSCAPE_HD void thin(float highest_slope) {
+    CandidatePosts::Records<true> records(highest_slope);
+    candidates_.keepBackwards([&](const PathPost& post) { return records.template add<kEarth>(seen(post)); });
+  }
+  template <int kReceivers, bool kEarth>
+  EMSCAPE_NOINLINE EMSCAPE_HD void findAmongCandidates(const float* rx_m, Maxima* most) const {
+    Several<kReceivers, kEarth, false> several(*this, rx_m);
+    candidates_.each([&](const PathPost& post) { several.add(seen(post), half_curvature_); });
+    several.get(tx_slope_, most);
   }
 
   /// Range of which nearer posts are of no account to receivers in sight of a much higher transmitter: seen
@@ -414,15 +474,15 @@ EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& g
     };
     setReceivers();
     bool is_known = true;
-    if constexpr (!kOnePass) is_known = receivers.survey<0>(rx_m[0], rx_m, most);
+    const float highest_m = receiverOf(end - 1);
+    if constexpr (!kOnePass) is_known = receivers.survey<0>(rx_m[0], highest_m, nullptr, nullptr);
     while (k < end && is_known) {
-      if constexpr (kOnePass) {
-        is_known = receivers.survey<kReceivers>(rx_m[0], rx_m, most);
+      if (!kOnePass && !receivers.isLossy(rx_m[0])) break;
+      if (kOnePass || !receivers.canFind()) {
+        is_known = receivers.survey<kReceivers>(rx_m[0], highest_m, rx_m, most);
         if (!is_known) break;
       } else {
-        if (!receivers.isLossy(rx_m[0])) break;
-        const float next_m = k + kReceivers < end ? receiverOf(k + kReceivers) : HUGE_VALF;
-        receivers.find<kReceivers>(rx_m, receivers.isLossy(next_m) ? next_m : HUGE_VALF, most);
+        receivers.find<kReceivers>(rx_m, most);
       }
       EMSCAPE_UNROLL_BY(1)
       for (int j = 0; j < kReceivers && k + j < end; ++j) {

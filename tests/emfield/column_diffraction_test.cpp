@@ -170,12 +170,11 @@ TEST(ColumnDiffraction, OfMoreCandidatesThanThereIsRoomForIsTheSame) {
     const FastInverse path = setup.grid.coordinatesOf(setup.station, c, 0);
     ColumnPosts posts(setup.station, setup.ground, path, true);
     diffraction_detail::CandidatePosts candidates;
-    diffraction_detail::CandidatePosts::Records records;
+    diffraction_detail::CandidatePosts::Records<false> records(0);
     candidates.clear();
     const auto distance_m = static_cast<float>(path.distance_m);
     posts.each<true>(0, [&](const PathPost& post) {  // seen from the ground in a plain
-      const float root = 1 / std::sqrt(post.range_m * (distance_m - post.range_m));
-      if (records.add<true>(post, post.height_msl_m, post.height_msl_m, root)) candidates.add(post);
+      if (records.add<true>({post, distance_m, 0, 0, 0})) candidates.add(post);
     });
     too_many += !candidates.areComplete();
   }
