@@ -106,7 +106,10 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   const propagation::PathExtent extent = pathExtent(station, setup_.columns);
   work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
   work.ground = groundPosts(setup_.terrain.get(), work.ranges_m);
-  if (terrain_ != nullptr) work.ground.terrain = terrain_->view();
+  if (terrain_ != nullptr) {
+    work.ground.terrain = terrain_->view();
+    work.ground.tiles = terrain_->tiles();
+  }
   work.has_mechanisms = setup_.needs[request.emitter].mechanisms && hasMechanisms(model);
   if (setup_.needs[request.emitter].clutter_map)
     work.clutter = clutterMapTask(scenario, emitter, station, &extent);
@@ -344,7 +347,6 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
       task.ground.is_raised = work.model->is_raised && work.ground.terrain.hasCover();
       task.ground.has_clutter = work.model->has_clutter;
       task.at_crossings = true;
-      if (!task.ground.is_raised) task.highest_msl_m = highest_post_m_;
     } else {
       continue;
     }

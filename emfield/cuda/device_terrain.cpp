@@ -8,6 +8,7 @@ DeviceTerrain::DeviceTerrain(const scenario::TerrainView& terrain, cudaStream_t 
     : cover_(terrain.cover) {
   upload(terrain.rasters, terrain.count, rasters_, stream);
   upload(terrain.surfaces, terrain.surface_count, surfaces_, stream);
+  if (terrain.count > 0) tile_heights_.upload(highestOfTiles(terrain.rasters[0], tile_columns_), stream);
   if (!cover_.isSet()) return;
   emscape::cuda::uploadStaged(
       cover_cells_, cover_.cells,

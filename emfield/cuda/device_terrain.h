@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/cuda/cuda_memory.h"
+#include "emfield/ground/ground_posts.h"
 #include "emscape/scenario/terrain/terrain.h"
 #include "scenario/terrain/view.h"
 
@@ -23,6 +24,7 @@ class DeviceTerrain {
     return {rasters_.data(), static_cast<int>(rasters_.size()), surfaces_.data(),
             static_cast<int>(surfaces_.size()), cover_};
   }
+  HighestOfTiles tiles() const { return {tile_heights_.data(), tile_columns_}; }
 
  private:
   void upload(const scenario::TerrainRaster* from, int count,
@@ -33,6 +35,8 @@ class DeviceTerrain {
   emscape::cuda::Buffer<std::uint8_t> cover_cells_;
   emscape::cuda::Buffer<scenario::CoverValues> cover_classes_;
   scenario::LandCoverView cover_;
+  emscape::cuda::Buffer<float> tile_heights_;
+  int tile_columns_ = 0;
 };
 
 }  // namespace emscape::emfield::cuda

@@ -25,8 +25,6 @@ struct DiffractionTask {
   ExcessOutput out;
   propagation::TerminalClutter terminal = {};
   bool at_crossings = false;  ///< see chord_crossings.h; false: regular posts
-  /// See highestPost_m(); infinity where profiles are raised by clutter.
-  float highest_msl_m = HUGE_VALF;
 };
 
 namespace diffraction_detail {
@@ -106,25 +104,22 @@ class CandidatePosts {
  public:
   static constexpr int kMost = 224;
 
-  /// The largest measures of the posts so far, seen from a receiver.
-  /// @tparam kBackwards  from the farthest post to the nearest one
-  template <bool kBackwards>
-  class Records {
-   public:
-    EMSCAPE_HD explicit Records(float slope) : slope_(slope) {}
+  /// The largest measures of the posts so far, in order of their ranges, seen from a receiver.
+  struct Records {
+    float slope;  ///< of the line of sight
+    float rx_slope = -HUGE_VALF, nearest = -HUGE_VALF, plain_rx_slope = -HUGE_VALF, plain_m = -HUGE_VALF;
+
+    EMSCAPE_HD explicit Records(float slope_) : slope(slope_) {}
 
     /// @tparam kPlain  also those without the earth's bulge
     /// @return true if the next post exceeds one
     template <bool kPlain>
     EMSCAPE_HD bool add(const SeenPost& post) {
-      if (kBackwards ? post.range_m > last_m_ : post.range_m < last_m_)  // posts come in runs
-        *this = Records(slope_);
-      last_m_ = post.range_m;
-      const float line = fmaf(-slope_, post.range_m, post.height_m);
-      const bool exceeds = exceed(line * post.per_beyond, rx_slope_) | exceed(line * post.root, nearest_);
+      const float line = fmaf(-slope, post.range_m, post.height_m);
+      const bool exceeds = exceed(line * post.per_beyond, rx_slope) | exceed(line * post.root, nearest);
       if (!kPlain) return exceeds;
-      const float plain_line = fmaf(-slope_, post.range_m, post.plain_m);
-      return exceeds | exceed(plain_line * post.per_beyond, plain_rx_slope_) | exceed(plain_line, plain_m_);
+      const float plain_line = fmaf(-slope, post.range_m, post.plain_m);
+      return exceeds | exceed(plain_line * post.per_beyond, plain_rx_slope) | exceed(plain_line, plain_m);
     }
 
    private:
@@ -133,9 +128,6 @@ class CandidatePosts {
       record = fmaxf(record, here);
       return exceeds;
     }
-
-    float slope_, last_m_ = 0;
-    float rx_slope_ = -HUGE_VALF, nearest_ = -HUGE_VALF, plain_rx_slope_ = -HUGE_VALF, plain_m_ = -HUGE_VALF;
   };
 
   EMSCAPE_HD void clear() {
@@ -207,6 +199,10 @@ class Receivers {
     const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
     has_earth_ =
         !isClearThroughout(earth, distance_m_, sightLine(earth, distance_m_, tx_m_, lowest_m - ground_m_));
+    if (has_earth_) {
+      fitTrend();
+      has_earth_ = isInEarth(lowest_m);
+    }
     const float slope = slopeTo(lowest_m);
     const bool for_any = isForAnyLane(has_earth_);  // one loop for all threads
     const bool is_known =
@@ -286,57 +282,95 @@ class Receivers {
     }
   };
 
+  /// The line fitted to the terrain, and the share of the sea. Regular posts at a spacing of the elevation
+  /// model are enough: its ends move by decimetres.
+  EMSCAPE_NOINLINE EMSCAPE_HD void fitTrend() {
+    double v1 = 0, v2 = 0;  // as propagation::TerrainSums
+    float sea_m = 0, before_m = 0, before_height_m = 0;
+    bool was_sea = base_msl_m_ <= 0;
+    const auto add = [&](float range_m, float height_msl_m) {
+      const float length_m = range_m - before_m, height_m = height_msl_m - base_msl_m_;
+      const bool is_sea = height_msl_m <= 0;
+      v1 += static_cast<double>(length_m * (before_height_m + height_m));
+      v2 += static_cast<double>(
+          length_m * (height_m * (2 * range_m + before_m) + before_height_m * (range_m + 2 * before_m)));
+      sea_m = fmaf(length_m, (was_sea ? 0.5f : 0) + (is_sea ? 0.5f : 0), sea_m);
+      before_m = range_m;
+      before_height_m = height_m;
+      was_sea = is_sea;
+    };
+    posts_.eachSecondRegular([&](const PathPost& post) { add(post.range_m, post.height_msl_m); });
+    add(distance_m_, ground_m_ + base_msl_m_);
+    const propagation::TerrainSums sums{v1, v2};
+    trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(distance_m_)));
+    trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(distance_m_)));
+    if (task_.model.model.sea_by_height) sea_fraction_ = sea_m / distance_m_;
+  }
+
+  /// What posts of a part of the path that are not higher than a height cannot exceed.
+  struct Bounds {
+    float tx_slope, clear_slope, rx_slope, nearest, plain_tx_slope, plain_rx_slope, plain_m;
+  };
+  EMSCAPE_HD Bounds boundsOf(float from_m, float to_m, float highest_msl_m, float slope,
+                             float clearance) const {
+    constexpr float kRounding_m = 0.01f;
+    const float d = distance_m_, middle_m = fminf(fmaxf(d / 2, from_m), to_m);
+    const float plain_m = highest_msl_m - base_msl_m_ - tx_m_ + kRounding_m;
+    const float widest = middle_m * (d - middle_m);
+    const float height_m = fmaf(half_curvature_, widest, plain_m);
+    const float rise_m = fmaxf(-slope * from_m, -slope * to_m);
+    const float line_m = height_m + rise_m, plain_line_m = plain_m + rise_m;
+    const float per_from = approximateReciprocal(from_m), per_to = approximateReciprocal(to_m);
+    const float beyond_from = d - from_m, beyond_to = d - to_m;
+    const float narrowest = fminf(from_m * beyond_from, to_m * beyond_to);
+    Bounds most;
+    most.tx_slope = height_m * (height_m > 0 ? per_from : per_to);
+    most.clear_slope = most.tx_slope + clearance * std::sqrt(beyond_from * per_from);
+    most.rx_slope = line_m * approximateReciprocal(line_m > 0 ? beyond_to : beyond_from);
+    most.nearest = line_m * approximateReciprocalRoot(line_m > 0 ? narrowest : widest);
+    most.plain_tx_slope = plain_m * (plain_m > 0 ? per_from : per_to);
+    most.plain_rx_slope = plain_line_m * approximateReciprocal(plain_line_m > 0 ? beyond_to : beyond_from);
+    most.plain_m = plain_line_m;
+    return most;
+  }
+
   /// @tparam kEarth  also for the smooth earth
   /// @param lowest_slope  of the line of sight to the lowest receiver
   template <int kReceivers, bool kEarth>
   EMSCAPE_NOINLINE EMSCAPE_HD bool pass(const float* rx_m, float lowest_slope, Maxima* most) {
     constexpr bool kKeeps = kReceivers == 0;
     const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
-    const float d = distance_m_, base_msl_m = base_msl_m_, half_curvature = half_curvature_;
-    float tx, clear, plain_tx, unknown, v1, v2, sea_m;
-    PathPost before{};
-    float v1_rest, v2_rest;  // of the sums' rounding
-    const auto add = [](float term, float& sum, float& rest) {
-      const float more = term - rest, next = sum + more;
-      rest = (next - sum) - more;
-      sum = next;
-    };
-    const auto addToTrend = [&](const PathPost& to) {  // as propagation::TerrainSums
-      const float length_m = to.range_m - before.range_m;
-      const float from_m = before.height_msl_m - base_msl_m, to_m = to.height_msl_m - base_msl_m;
-      add(length_m * (from_m + to_m), v1, v1_rest);
-      add(length_m * (to_m * (2 * to.range_m + before.range_m) + from_m * (to.range_m + 2 * before.range_m)),
-          v2, v2_rest);
-      sea_m =
-          fmaf(length_m, (before.height_msl_m <= 0 ? 0.5f : 0) + (to.height_msl_m <= 0 ? 0.5f : 0), sea_m);
-      before = to;
-    };
+    const float d = distance_m_, half_curvature = half_curvature_;
+    float tx, clear, plain_tx, unknown;
     bool is_whole;
-    const float nearest_m = kEarth ? 0 : nearestOfAll_m(lowest_slope, clearance);
     Several<kReceivers, kEarth, true> several(*this, rx_m);
-    CandidatePosts::Records<false> records(lowest_slope);
+    CandidatePosts::Records records(lowest_slope);
     do {
       tx = clear = plain_tx = -HUGE_VALF;
-      unknown = base_msl_m - base_msl_m + (ground_m_ - ground_m_);
-      v1 = v2 = v1_rest = v2_rest = sea_m = 0;
-      before = {0, base_msl_m};
+      unknown = base_msl_m_ - base_msl_m_ + (ground_m_ - ground_m_);
       several.clear();
-      if constexpr (kKeeps) {
-        records = CandidatePosts::Records<false>(lowest_slope);
-        candidates_.clear();
-      }
-      is_whole = posts_.each<kEarth>(nearest_m, [&](const PathPost& post) {
+      records = CandidatePosts::Records(lowest_slope);
+      if constexpr (kKeeps) candidates_.clear();
+      const auto skips = [&](float from_m, float to_m, float highest_msl_m) -> bool {
+        if constexpr (kReceivers > 1) return false;  // above the candidates of the first pass
+        const Bounds bounds = boundsOf(from_m, to_m, highest_msl_m, lowest_slope, clearance);
+        const bool is_below = (bounds.tx_slope <= tx) & (bounds.clear_slope <= clear) &
+                              (bounds.rx_slope <= records.rx_slope) & (bounds.nearest <= records.nearest);
+        // Or clear of the lowest line of sight.
+        if constexpr (!kEarth) return is_below | (bounds.nearest <= -clearance);
+        return is_below & (bounds.plain_tx_slope <= plain_tx) &
+               (bounds.plain_rx_slope <= records.plain_rx_slope) & (bounds.plain_m <= records.plain_m);
+      };
+      is_whole = posts_.each(skips, [&](const PathPost& post) {
         unknown += post.height_msl_m - post.height_msl_m;
         const SeenPost seen = this->seen(post);
         const float per_range = (d - seen.range_m) * seen.root;
         tx = fmaxf(tx, per_range * (seen.height_m * seen.root));
         clear = fmaxf(clear, per_range * fmaf(seen.height_m, seen.root, clearance));
-        if constexpr (kEarth) {
-          plain_tx = fmaxf(plain_tx, per_range * (seen.plain_m * seen.root));
-          addToTrend(post);
-        }
+        if constexpr (kEarth) plain_tx = fmaxf(plain_tx, per_range * (seen.plain_m * seen.root));
+        const bool is_record = records.template add<kEarth>(seen);
         if constexpr (kKeeps) {
-          if (records.template add<kEarth>(seen)) candidates_.add(post);
+          if (is_record) candidates_.add(post);
         }
         several.add(seen, half_curvature);
       });
@@ -344,20 +378,13 @@ class Receivers {
     tx_slope_ = tx;
     clear_slope_ = clear;
     plain_tx_slope_ = plain_tx;
-    if constexpr (kEarth) {
-      addToTrend({d, ground_m_ + base_msl_m});
-      const propagation::TerrainSums sums{static_cast<double>(v1), static_cast<double>(v2)};
-      trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(d)));
-      trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(d)));
-      if (task_.model.model.sea_by_height) sea_fraction_ = sea_m / d;
-    }
     several.get(tx, most);
     return unknown == 0;
   }
   /// Leaves out the candidates that exceed no farther ones for a receiver at that slope and those below.
   template <bool kEarth>
   EMSCAPE_NOINLINE EMSCAPE_HD void thin(float highest_slope) {
-    CandidatePosts::Records<true> records(highest_slope);
+    CandidatePosts::Records records(highest_slope);
     candidates_.keepBackwards([&](const PathPost& post) { return records.template add<kEarth>(seen(post)); });
   }
   template <int kReceivers, bool kEarth>
@@ -365,20 +392,6 @@ class Receivers {
     Several<kReceivers, kEarth, false> several(*this, rx_m);
     candidates_.each([&](const PathPost& post) { several.add(seen(post), half_curvature_); });
     several.get(tx_slope_, most);
-  }
-
-  /// Range of which nearer posts are of no account to receivers in sight of a much higher transmitter: seen
-  /// from it they are below the line of sight to the lowest receiver, with the clearance c sqrt(d1 d2) that
-  /// is free of loss. With H the height of the highest post over the transmitter and u the root of the range,
-  /// H + (d / (2 a) - slope) u^2 + c sqrt(d) u is larger than what such posts lack to that, and rises with u.
-  EMSCAPE_HD float nearestOfAll_m(float slope, float clearance) const {
-    const float above_m = task_.highest_msl_m - base_msl_m_ - tx_m_;
-    if (!(above_m < 0)) return 0;
-    const float square = fmaxf(half_curvature_ * distance_m_ - slope, 0);
-    const float linear = clearance * std::sqrt(distance_m_);
-    const float root = -2 * above_m / (linear + std::sqrt(linear * linear - 4 * square * above_m));
-    constexpr float kRounding = 0.999f;
-    return kRounding * root * root;
   }
 
   EMSCAPE_HD TerrainTrend<float> trend() const {
@@ -418,7 +431,7 @@ class Receivers {
   float edge_scale_;  ///< from heights over sqrt(d1 d2) to nu
   float half_curvature_, sea_fraction_;
   CandidatePosts candidates_;          ///< for the next receivers
-  bool has_earth_ = false;             ///< the ground alone does not prove that the smooth earth has no loss
+  bool has_earth_ = false;             ///< the smooth earth has a loss for the lowest receiver
   float tx_slope_ = -HUGE_VALF;        ///< largest slope from the transmitter to an obstacle
   float clear_slope_ = -HUGE_VALF;     ///< of the lowest line of sight that all obstacles are clear of
   float plain_tx_slope_ = -HUGE_VALF;  ///< tx_slope without the earth's bulge

@@ -32,13 +32,14 @@ class ColumnPosts {
     if (!at_crossings || ground.is_smooth) regular_chords_ = ~0ull;
   }
 
-  /// Calls visit(PathPost) for the posts from the first one beyond the emitter on.
-  /// @tparam kOrdered  in the order of their ranges, which takes more time
-  /// @param nearest_m  nearer posts may be left out, not with kOrdered
+  /// Calls visit(PathPost) for the posts from the first one beyond the emitter on, in the order of their
+  /// ranges.
+  /// @param skips  skips(from (m), to (m), height above mean sea level (m)): true if posts between these
+  /// ranges that are not higher may be left out
   /// @return false if the visits are void: a chord was found whose posts are regular ones, and the next call
   /// knows it
-  template <bool kOrdered, class Visit>
-  EMSCAPE_HD bool each(float nearest_m, const Visit& visit) {
+  template <class Skips, class Visit>
+  EMSCAPE_HD bool each(const Skips& skips, const Visit& visit) {
     const int regular = ground_.lastBefore(path_.distance_m) + 1;
     const bool is_smooth = ground_.is_smooth, with_beginnings = regular_chords_ != ~0ull;
     const Chords of_path = chords();
@@ -52,7 +53,7 @@ class ColumnPosts {
                          is_smooth ? 0 : heightAt(chord, more.next_m)});
       };
       const auto visitInOrder = [&](const PathPost& post) {
-        if (kOrdered) addClutter(static_cast<double>(post.range_m));
+        addClutter(static_cast<double>(post.range_m));
         visit(post);
       };
       const double end_of_chord_m = n + 1 < of_path.count ? begin_m + of_path.length_m : HUGE_VAL;
@@ -63,28 +64,43 @@ class ColumnPosts {
       bool with_crossings = !isRegular(n);
       if (with_crossings) {
         // Posts besides the crossings: the first regular ones, or the chord's beginning.
-        const int others_end = n == 0 ? larger(smaller(ground_.near_count, smaller(end, 128)), 1) : first;
+        const int others = n == 0 ? larger(smaller(ground_.near_count, smaller(end, 128)), 1) - 1 : 1;
         const double* const others_m = n == 0 ? ground_.ranges_m + 1 : &begin_m;
-        const int others = n == 0 ? others_end - 1 : 1;
         const Found found =
-            kOrdered ? eachInOrder(chord, begin_m, of_path.length_m, others_m, others, visitInOrder)
-                     : eachCrossing(chord, begin_m, of_path.length_m, nearest_m, visit);
+            eachCrossing(chord, begin_m, of_path.length_m, others_m, others, skips, visitInOrder);
         if (found != Found::all) regular_chords_ |= bitOf(n);
         if (found == Found::void_post) return false;
         with_crossings = found == Found::all;
-        if (with_crossings) end = kOrdered ? first : others_end;
+        if (with_crossings) end = first;
       }
       if (!with_crossings && beginning > 0 && first < end && ground_.ranges_m[first] <= begin_m) ++first;
       EMSCAPE_UNROLL_BY(1)
-      for (int i = first - (with_crossings && kOrdered ? 0 : beginning); i < end; ++i) {
+      for (int i = first - (with_crossings ? 0 : beginning); i < end; ++i) {
         const double range_m = i < first ? begin_m : ground_.ranges_m[i];
-        if (with_crossings && range_m < static_cast<double>(nearest_m)) continue;
         visitInOrder(PathPost{fminf(static_cast<float>(range_m), farthest_m()),
                               is_smooth ? 0 : heightAt(chord, range_m)});
       }
       addClutter(end_of_chord_m);
     }
     return true;
+  }
+
+  /// Calls visit(PathPost) for every second regular post, in the order of their ranges.
+  template <class Visit>
+  EMSCAPE_HD void eachSecondRegular(const Visit& visit) const {
+    const int regular = ground_.lastBefore(path_.distance_m) + 1;
+    const Chords of_path = chords();
+    TerrainChord chord;
+    int n = -1;
+    EMSCAPE_UNROLL_BY(1)
+    for (int i = 1; i < regular; i += 2) {
+      const double range_m = ground_.ranges_m[i];
+      const int here = smaller(static_cast<int>(range_m / of_path.length_m), of_path.count - 1);
+      if (here != n && !ground_.is_smooth) prepare(station_, ground_, path_, here, chord);
+      n = here;
+      visit(PathPost{fminf(static_cast<float>(range_m), farthest_m()),
+                     ground_.is_smooth ? 0 : heightAt(chord, range_m)});
+    }
   }
 
   /// After each().
@@ -158,6 +174,47 @@ class ColumnPosts {
     int count;
     double length_m;
   };
+  /// HighestOfTiles along a chord, in lines from the chord's corner.
+  class TilesAlong {
+   public:
+    EMSCAPE_HD TilesAlong(const GroundPosts& ground, const float* corner_msl_m, bool by_columns) {
+      if (ground.tiles.msl_m == nullptr || ground.has_clutter || ground.is_raised) return;
+      const scenario::TerrainRaster& raster = ground.terrain.rasters[0];
+      const long long corner = corner_msl_m - raster.heights_msl_m;
+      const int row = static_cast<int>(corner / raster.columns);
+      const int column = static_cast<int>(corner - static_cast<long long>(row) * raster.columns);
+      msl_m_ = ground.tiles.msl_m;
+      most_origin_ = by_columns ? column : row;
+      few_origin_ = by_columns ? row : column;
+      most_step_ = by_columns ? 1 : ground.tiles.columns;
+      few_step_ = by_columns ? ground.tiles.columns : 1;
+    }
+    EMSCAPE_HD bool areKnown() const { return msl_m_ != nullptr; }
+    /// The lines from one on that are reached within the tile in which the path is before it.
+    EMSCAPE_HD int linesFrom(int line, int direction) const {
+      const int in_tile = cellBefore(line, direction) & (HighestOfTiles::kCells - 1);
+      return direction > 0 ? HighestOfTiles::kCells - in_tile : in_tile + 1;
+    }
+    /// Of the cells before these lines, from one across to another.
+    EMSCAPE_HD float highest_m(int line, int direction, int cell, int end_cell) const {
+      const int first = (few_origin_ + smaller(cell, end_cell)) >> HighestOfTiles::kShift;
+      const int last = (few_origin_ + larger(cell, end_cell)) >> HighestOfTiles::kShift;
+      if (last - first > 2) return HUGE_VALF;
+      const float* const of_lines =
+          msl_m_ + (cellBefore(line, direction) >> HighestOfTiles::kShift) * most_step_;
+      float highest = of_lines[first * few_step_];
+      for (int tile = first + 1; tile <= last; ++tile) highest = fmaxf(highest, of_lines[tile * few_step_]);
+      return highest;
+    }
+
+   private:
+    EMSCAPE_HD int cellBefore(int line, int direction) const {
+      return most_origin_ + line - (direction > 0 ? 1 : 0);
+    }
+
+    const float* msl_m_ = nullptr;
+    int most_origin_ = 0, few_origin_ = 0, most_step_ = 0, few_step_ = 0;
+  };
 
   EMSCAPE_HD Chords chords() const {
     if (ground_.is_smooth) return {1, path_.distance_m};
@@ -197,65 +254,12 @@ class ColumnPosts {
     return cover_m > 0 ? cover_m : 0;
   }
 
-  /// The crossings of a chord, column by column, then row by row.
-  template <class Visit>
-  EMSCAPE_HD Found eachCrossing(const TerrainChord& chord, double begin_m, double chord_m, float nearest_m,
-                                const Visit& visit) const {
-    if (chord.in_raster.corner_msl_m == nullptr) return Found::too_many;
-    const ChordCrossings crossings(chord.in_raster);
-    if (crossings.count() > ground_.maxCrossings(chord_m)) return Found::too_many;
-    const float* const corner_msl_m = crossings.corner_msl_m;
-    const int row_posts = crossings.row_posts;
-    const auto from_m = static_cast<float>(begin_m), length_m = static_cast<float>(chord_m);
-    const float farthest_m = this->farthest_m();
-    const bool is_raised = ground_.is_raised;
-    const float nearest_part = (nearest_m - from_m) / length_m;
-    float unknown = 0;
-    EMSCAPE_UNROLL_BY(1)
-    for (int run = 0; run < 4; ++run) {  // before and after the turn of columns and rows
-      const bool of_columns = run < 2, is_first = run % 2 == 0;
-      const LineCrossings lines = of_columns ? crossings.columns : crossings.rows;
-      const Parabola<float> across = of_columns ? crossings.rows.coordinate : crossings.columns.coordinate;
-      int first = is_first ? 0 : lines.before_turn;
-      if (nearest_part > 0) {
-        const float part = fminf(nearest_part, 1);
-        first = larger(first, lines.countBefore(part, static_cast<int>(lines.coordinate.at(part))) - 1);
-      }
-      const int end = is_first ? lines.before_turn : lines.count;
-      if (first >= end) continue;
-      const int line_step = of_columns ? 1 : row_posts, cell_step = of_columns ? row_posts : 1;
-      const int step = (lines.to_root > 0) == is_first ? 1 : -1;
-      const float c1 = lines.coordinate.c[1], square = c1 * c1, c2 = lines.coordinate.c[2];
-      const int first_line = lines.line(first);
-      float to_line = static_cast<float>(first_line) - lines.coordinate.c[0];
-      const float* line_msl_m = corner_msl_m + static_cast<long long>(first_line) * line_step;
-      EMSCAPE_UNROLL_BY(2)
-      for (int n = first; n < end; ++n) {
-        const float sum = fmaf(lines.to_root, rootOf(fmaxf(fmaf(4 * c2, to_line, square), 0)), c1);
-        float part = (is_first ? 2 * to_line : -sum) * approximateReciprocal(is_first ? sum : 2 * c2);
-        part = fminf(fmaxf(part, 0), 1);
-        const float at = across.at(part);
-        const int cell = static_cast<int>(at);
-        const float* const near = line_msl_m + cell * cell_step;
-        PathPost post;
-        post.height_msl_m = lerp(near[0], near[cell_step], at - static_cast<float>(cell));
-        post.range_m = fminf(fmaxf(fmaf(length_m, part, from_m), 0.01f), farthest_m);
-        unknown += post.height_msl_m;
-        if (is_raised)
-          post.height_msl_m = raised(chord, static_cast<double>(post.range_m), post.height_msl_m);
-        visit(post);
-        to_line += static_cast<float>(step);
-        line_msl_m += step * line_step;
-      }
-    }
-    return std::isnan(unknown) ? Found::void_post : Found::all;
-  }
-
   /// The crossings of a chord and other posts, in their order: between two crossings with the lines of which
   /// there are more, those with the others.
-  template <class Visit>
-  EMSCAPE_HD Found eachInOrder(const TerrainChord& chord, double begin_m, double chord_m,
-                               const double* others_m, int others, const Visit& visit) const {
+  template <class Skips, class Visit>
+  EMSCAPE_HD Found eachCrossing(const TerrainChord& chord, double begin_m, double chord_m,
+                                const double* others_m, int others, const Skips& skips,
+                                const Visit& visit) const {
     if (chord.in_raster.corner_msl_m == nullptr) return Found::too_many;
     const ChordCrossings crossings(chord.in_raster);
     if (crossings.count() > ground_.maxCrossings(chord_m)) return Found::too_many;
@@ -268,47 +272,73 @@ class ColumnPosts {
     const auto from_m = static_cast<float>(begin_m), length_m = static_cast<float>(chord_m);
     const float farthest_m = this->farthest_m();
     const bool is_raised = ground_.is_raised;
+    const auto rangeAt = [&](float part) {
+      return fminf(fmaxf(fmaf(length_m, part, from_m), 0.01f), farthest_m);
+    };
+    TilesAlong tiles(ground_, corner_msl_m, by_columns);
     int other = 0;
     float other_m = others > 0 ? static_cast<float>(others_m[0]) : HUGE_VALF, unknown = 0;
+    const auto nextOther = [&] {
+      other_m = ++other < others ? static_cast<float>(others_m[other]) : HUGE_VALF;
+    };
     const auto add = [&](float part, float height_msl_m) {
-      PathPost post{fminf(fmaxf(fmaf(length_m, part, from_m), 0.01f), farthest_m), height_msl_m};
+      PathPost post{rangeAt(part), height_msl_m};
       unknown += height_msl_m;
       while (other_m <= post.range_m) {
         visit(PathPost{fminf(other_m, farthest_m), heightAt(chord, others_m[other])});
-        other_m = ++other < others ? static_cast<float>(others_m[other]) : HUGE_VALF;
+        nextOther();
       }
       if (is_raised) post.height_msl_m = raised(chord, static_cast<double>(post.range_m), height_msl_m);
       visit(post);
     };
     int cell = few.first_cell;
-    for (int n = 0; n <= most.count; ++n) {
-      int line = 0, next_cell = few.last_cell;
-      float part = 1, across = 0;
-      if (n < most.count) {
-        line = most.line(n);
-        part = partOf(most, n < most.before_turn, line);
-        across = few.coordinate.at(part);
-        next_cell = static_cast<int>(across);
+    float reached = 0;  // part of the chord
+    for (int n = 0; n <= most.count;) {
+      int end = n + 1;
+      if (tiles.areKnown() && n < most.count) {  // as far as to the end of a tile
+        const bool is_first = n < most.before_turn;
+        const int line = most.line(n), direction = is_first ? most.step : -most.step;
+        end = n + smaller(tiles.linesFrom(line, direction), (is_first ? most.before_turn : most.count) - n);
+        const float part = partOf(most, is_first, line + direction * (end - 1 - n));
+        const int end_cell = static_cast<int>(few.coordinate.at(part));
+        const bool turns = few.turn > reached && few.turn < part;
+        const float to_m = rangeAt(part);
+        if (!turns && skips(rangeAt(reached), to_m, tiles.highest_m(line, direction, cell, end_cell))) {
+          cell = end_cell;
+          reached = part;
+          n = end;
+          while (other_m <= to_m) nextOther();
+          continue;
+        }
+        reached = part;
       }
-      while (cell != next_cell) {
-        const bool rises = cell < next_cell;
-        const int few_line = rises ? cell + 1 : cell;
-        const float few_part = partOf(few, rises == (few.to_root > 0), few_line);
-        const float along = most.coordinate.at(few_part);
-        const int of_most = static_cast<int>(along);
-        const float* const near = corner_msl_m + (few_line * few_step + of_most * most_step);
-        add(few_part, lerp(near[0], near[most_step], along - static_cast<float>(of_most)));
-        cell += rises ? 1 : -1;
+      for (; n < end; ++n) {
+        int line = 0, next_cell = few.last_cell;
+        float part = 1, across = 0;
+        if (n < most.count) {
+          line = most.line(n);
+          part = partOf(most, n < most.before_turn, line);
+          across = few.coordinate.at(part);
+          next_cell = static_cast<int>(across);
+        }
+        while (cell != next_cell) {
+          const bool rises = cell < next_cell;
+          const int few_line = rises ? cell + 1 : cell;
+          const float few_part = partOf(few, rises == (few.to_root > 0), few_line);
+          const float along = most.coordinate.at(few_part);
+          const int of_most = static_cast<int>(along);
+          const float* const near = corner_msl_m + (few_line * few_step + of_most * most_step);
+          add(few_part, lerp(near[0], near[most_step], along - static_cast<float>(of_most)));
+          cell += rises ? 1 : -1;
+        }
+        if (n == most.count) continue;
+        const float* const near = corner_msl_m + (line * most_step + next_cell * few_step);
+        add(part, lerp(near[0], near[few_step], across - static_cast<float>(next_cell)));
       }
-      if (n == most.count) break;
-      const float* const near = corner_msl_m + (line * most_step + next_cell * few_step);
-      add(part, lerp(near[0], near[few_step], across - static_cast<float>(next_cell)));
     }
-    while (other < others) {
+    for (; other < others; ++other)
       visit(
           PathPost{fminf(static_cast<float>(others_m[other]), farthest_m), heightAt(chord, others_m[other])});
-      ++other;
-    }
     return std::isnan(unknown) ? Found::void_post : Found::all;
   }
 

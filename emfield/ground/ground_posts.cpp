@@ -67,4 +67,28 @@ float highestPost_m(const scenario::TerrainView& terrain) {
   return *std::max_element(of_rows.begin(), of_rows.end());
 }
 
+std::vector<float> highestOfTiles(const scenario::TerrainRaster& raster, int& columns) {
+  constexpr int kCells = HighestOfTiles::kCells;
+  columns = (raster.columns - 2) / kCells + 1;
+  const int rows = (raster.rows - 2) / kCells + 1;
+  std::vector<float> highest_m(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows),
+                               -HUGE_VALF);
+  parallelFor(rows, 8, [&](int begin, int end) {
+    for (int tile_row = begin; tile_row < end; ++tile_row) {
+      float* const of_row =
+          highest_m.data() + static_cast<std::size_t>(tile_row) * static_cast<std::size_t>(columns);
+      const int last_row = std::min((tile_row + 1) * kCells, raster.rows - 1);
+      for (int row = tile_row * kCells; row <= last_row; ++row) {
+        const float* const posts_msl_m = raster.heights_msl_m + static_cast<long long>(row) * raster.columns;
+        for (int tile = 0; tile < columns; ++tile) {
+          const int last = std::min((tile + 1) * kCells, raster.columns - 1);
+          for (int i = tile * kCells; i <= last; ++i)
+            of_row[tile] = std::isnan(posts_msl_m[i]) ? HUGE_VALF : std::max(of_row[tile], posts_msl_m[i]);
+        }
+      }
+    }
+  });
+  return highest_m;
+}
+
 }  // namespace emscape::emfield

@@ -37,6 +37,15 @@ EMSCAPE_HD inline bool isClutterAt(double range_m, double path_m) {
   return (range_m >= kFrom_m) & (path_m - range_m >= kFrom_m);
 }
 
+/// The highest posts of square tiles of the finest raster, by rows, south first. A tile has the posts on its
+/// edges, too; with a void it is infinite.
+struct HighestOfTiles {
+  static constexpr int kShift = 3, kCells = 1 << kShift;  ///< cells between posts on a side
+
+  const float* msl_m = nullptr;  ///< null: not known
+  int columns = 0;
+};
+
 /// The ground as plain data, for loops on host and device.
 struct GroundPosts {
   scenario::TerrainView terrain;
@@ -52,6 +61,7 @@ struct GroundPosts {
   /// that a path and the path back meet the same clutter; see clutterPost_m().
   bool has_clutter = false;
   int clutter_first = 0, clutter_end = 0;  ///< the regular posts that are mirrored for that
+  HighestOfTiles tiles = {};
 
   /// Number of the posts for clutter of a long path.
   EMSCAPE_HD int clutterPosts() const { return has_clutter ? clutter_end - clutter_first + 2 : 0; }
@@ -97,6 +107,10 @@ GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<doub
 /// Height (m above mean sea level) that no post exceeds, of a terrain of one raster in which none is missing;
 /// infinity of any other. Reads every post. The raster may be larger than Terrain::box().
 float highestPost_m(const scenario::TerrainView& terrain);
+
+/// HighestOfTiles::msl_m of a raster. Reads every post.
+/// @param columns  set to HighestOfTiles::columns
+std::vector<float> highestOfTiles(const scenario::TerrainRaster& raster, int& columns);
 
 /// Calls visit(post, height above mean sea level (m)) for the first `count` posts toward a point, in their
 /// order; NaN where the terrain is missing.

@@ -70,13 +70,19 @@ std::vector<float> lossesOfTheCpu(const SeenField& setup, const EmitterExcess& e
                 {{nullptr, loss_db.data()}, nullptr, nullptr, edge_m.data()});
   return loss_db;
 }
+/// @param with_tiles  posts are left out by HighestOfTiles
 template <int kReceivers>
 std::vector<float> lossesOfTheDevice(const SeenField& setup, const EmitterExcess& excess,
-                                     float highest_msl_m) {
+                                     bool with_tiles = true) {
   std::vector<float> loss_db(setup.columns.count() * setup.columns.t_m.size());
   DiffractionTask task{
       std::get<propagation::DiffractionExcess>(excess.model), excess.air,      setup.station, setup.ground,
-      {{nullptr, loss_db.data()}, nullptr, nullptr, nullptr}, excess.terminal, true,          highest_msl_m};
+      {{nullptr, loss_db.data()}, nullptr, nullptr, nullptr}, excess.terminal, true};
+  std::vector<float> tiles_msl_m;
+  if (with_tiles) {
+    tiles_msl_m = highestOfTiles(setup.ground.terrain.rasters[0], task.ground.tiles.columns);
+    task.ground.tiles.msl_m = tiles_msl_m.data();
+  }
   for (int c = 0; c < static_cast<int>(setup.columns.count()); ++c) {
     for (int segment = 0; segment < setup.grid.segments; ++segment)
       fillDiffraction<kReceivers>(task, setup.grid, c, segment);
@@ -111,8 +117,8 @@ TEST(ColumnDiffraction, OfTheDeviceIsThatOfTheCpu) {
       const SeenField setup(propagation::PropagationModel::diffraction, 50e3, height_agl_m, frequency_hz);
       const EmitterExcess excess = planned(setup);
       const std::vector<float> cpu = lossesOfTheCpu(setup, excess);
-      expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), cpu);
-      expectSameLosses(setup, lossesOfTheDevice<1>(setup, excess, HUGE_VALF), cpu);
+      expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), cpu);
+      expectSameLosses(setup, lossesOfTheDevice<1>(setup, excess), cpu);
     }
   }
 }
@@ -124,7 +130,7 @@ TEST(ColumnDiffraction, WithTerminalClutterIsThatOfTheCpu) {
   excess.terminal.below_m = 300;  // of several layers
   for (const bool is_larger : {false, true}) {
     excess.terminal.is_larger = is_larger;
-    expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess));
+    expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), lossesOfTheCpu(setup, excess));
   }
 }
 
@@ -143,22 +149,29 @@ TEST(ColumnDiffraction, OverClutterIsThatOfTheCpu) {
   excess.is_raised = excess.has_clutter = true;
   const std::vector<float> cpu = lossesOfTheCpu(setup, excess);
   EXPECT_NE(cpu, bare);
-  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), cpu);
-  expectSameLosses(setup, lossesOfTheDevice<1>(setup, excess, HUGE_VALF), cpu);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), cpu);
+  expectSameLosses(setup, lossesOfTheDevice<1>(setup, excess), cpu);
 }
 
 TEST(ColumnDiffraction, OfLeaningColumnsIsThatOfTheCpu) {
   const SeenField setup(propagation::PropagationModel::diffraction, 50e3, 15, 1e9, false, FrameKind::enu);
   const EmitterExcess excess = planned(setup);
-  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess));
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), lossesOfTheCpu(setup, excess));
 }
 
-TEST(ColumnDiffraction, PostsBelowEveryLineOfSightAreOfNoAccount) {
-  for (const double height_agl_m : {900.0, 1500.0, 4000.0}) {
-    const SeenField setup(propagation::PropagationModel::diffraction, 50e3, height_agl_m, 1e9);
-    const EmitterExcess excess = planned(setup);
-    EXPECT_EQ((lossesOfTheDevice<8>(setup, excess, setup.highest_m())),
-              (lossesOfTheDevice<8>(setup, excess, HUGE_VALF)));
+TEST(ColumnDiffraction, PostsOfLowTilesAreOfNoAccount) {
+  for (const double height_agl_m : {15.0, 900.0, 4000.0}) {
+    for (const bool has_hole : {false, true}) {
+      const SeenField setup(propagation::PropagationModel::diffraction, 50e3, height_agl_m, 1e9, has_hole);
+      const EmitterExcess excess = planned(setup);
+      const auto expectEqual = [](const std::vector<float>& a, const std::vector<float>& b) {
+        for (std::size_t i = 0; i < a.size(); ++i)
+          EXPECT_TRUE(a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i])))
+              << i << ": " << a[i] << ", " << b[i];
+      };
+      expectEqual(lossesOfTheDevice<8>(setup, excess), lossesOfTheDevice<8>(setup, excess, false));
+      expectEqual(lossesOfTheDevice<1>(setup, excess), lossesOfTheDevice<1>(setup, excess, false));
+    }
   }
 }
 
@@ -170,22 +183,23 @@ TEST(ColumnDiffraction, OfMoreCandidatesThanThereIsRoomForIsTheSame) {
     const FastInverse path = setup.grid.coordinatesOf(setup.station, c, 0);
     ColumnPosts posts(setup.station, setup.ground, path, true);
     diffraction_detail::CandidatePosts candidates;
-    diffraction_detail::CandidatePosts::Records<false> records(0);
+    diffraction_detail::CandidatePosts::Records records(0);
     candidates.clear();
     const auto distance_m = static_cast<float>(path.distance_m);
-    posts.each<true>(0, [&](const PathPost& post) {  // seen from the ground in a plain
-      if (records.add<true>({post, distance_m, 0, 0, 0})) candidates.add(post);
-    });
+    posts.each([](float, float, float) { return false; },
+               [&](const PathPost& post) {  // seen from the ground in a plain
+                 if (records.add<true>({post, distance_m, 0, 0, 0})) candidates.add(post);
+               });
     too_many += !candidates.areComplete();
   }
   EXPECT_GT(too_many, 0);
-  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess), 10);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), lossesOfTheCpu(setup, excess), 10);
 }
 
 TEST(ColumnDiffraction, IsUnknownAcrossAHole) {
   const SeenField setup(propagation::PropagationModel::diffraction, 80e3, 15, 1e9, true);
   const EmitterExcess excess = planned(setup);
-  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess, HUGE_VALF), lossesOfTheCpu(setup, excess), 10);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), lossesOfTheCpu(setup, excess), 10);
 }
 
 TEST(HighestPost, IsThatOfTheWholeRasterAndInfiniteWithVoids) {
