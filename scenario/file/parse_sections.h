@@ -14,7 +14,6 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/emitter.h"
 #include "emscape/scenario/model/platform.h"
-#include "emscape/scenario/model/receiver.h"
 #include "emscape/scenario/model/scenario.h"
 #include "emscape/scenario/model/target.h"
 #include "scenario/file/schema.h"
