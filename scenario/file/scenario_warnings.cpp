@@ -10,7 +10,6 @@
 #include "emscape/scenario/model/quantities.h"
 #include "recording/common/ticks.h"
 #include "scenario/file/far_outside.h"
-#include "scenario/file/quantity_needs.h"
 #include "scenario/scan/scan_sampling.h"
 
 namespace emscape::scenario {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "emscape/base/units.h"
 #include "emscape/scenario/terrain/terrain.h"
 #include "scenario/terrain/file_notes.h"
 #include "scenario/terrain/place.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
@@ -19,7 +18,6 @@
 #include "base/files/file_reading.h"
 #include "base/geodesy/gdal_file.h"
 #include "base/text/shell_word.h"
-#include "emscape/base/units.h"
 #include "emscape/base/work.h"
 #include "scenario/terrain/file_remedies.h"
 #include "scenario/terrain/gdal_messages.h"

@@ -7,13 +7,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <istream>
 #include <vector>
 
-#include "base/geodesy/gdal_file.h"
 #include "base/text/shell_word.h"
 #include "document/text_lines.h"
 #include "emscape/base/units.h"

@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "emscape/scenario/file/scenario_file.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"

@@ -3,7 +3,6 @@
 #include <imgui_internal.h>
 
 #include <array>
-#include <cstring>
 #include <optional>
 
 #include "apps/view/widgets/glyphs.h"

@@ -6,7 +6,6 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "apps/view/widgets/glyphs.h"
