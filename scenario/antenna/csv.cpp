@@ -213,9 +213,4 @@ PatternFile readGridPattern(const std::string& file) {
   return pattern;
 }
 
-AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
-  std::vector<std::string> warnings;
-  return antennaOf(file, readGridPattern(file), gain_dbi, warnings);
-}
-
 }  // namespace emscape::scenario
