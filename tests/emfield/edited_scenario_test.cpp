@@ -57,27 +57,28 @@ scenario::AntennaPtr someAntenna(Random& random) {
 }
 
 /// One kind of edit, named by the key that it changes. Solvers may refuse the result.
-struct Edit {
-  const char* key;
-  std::function<void(Scenario&, Emitter&, Random&)> apply;
-};
+using Edit = std::pair<const char*, std::function<void(Scenario&, Emitter&, Random&)>>;
+
+/// An edit of a scenario `s` or its emitter `e` that draws one of several values, or a number between two.
+#define CHOICE(value, ...)                                                                \
+  Edit(#value, []([[maybe_unused]] Scenario& s, [[maybe_unused]] Emitter& e, Random& r) { \
+    using Value [[maybe_unused]] = decltype(value);                                       \
+    value = oneOf(r, std::vector<decltype(value)>{__VA_ARGS__});                          \
+  })
+#define NUMBER(value, low, high)                                                          \
+  Edit(#value, []([[maybe_unused]] Scenario& s, [[maybe_unused]] Emitter& e, Random& r) { \
+    value = between(r, low, high);                                                        \
+  })
 
 const std::vector<Edit>& emitterEdits() {
   using propagation::Polarization;
   static const std::vector<Edit> edits{
       {"name", [](Scenario&, Emitter& e, Random&) { e.name += "'"; }},
-      {"power_w", [](Scenario&, Emitter& e, Random& r) { e.power_w = between(r, 1, 1e5); }},
-      {"losses_db", [](Scenario&, Emitter& e, Random& r) { e.losses_db = between(r, 0, 5); }},
-      {"frequency_hz",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.frequency_hz = oneOf(r, std::vector{4e8, 1.2e9, 3e9, 9e9});
-       }},
-      {"bandwidth_hz", [](Scenario&, Emitter& e, Random& r) { e.bandwidth_hz = between(r, 0, 3e7); }},
-      {"polarization",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.polarization = oneOf(r, std::vector{Polarization::horizontal, Polarization::vertical,
-                                               Polarization::slant_45, Polarization::circular_left});
-       }},
+      NUMBER(e.power_w, 1, 1e5),
+      NUMBER(e.losses_db, 0, 5),
+      CHOICE(e.frequency_hz, 4e8, 1.2e9, 3e9, 9e9),
+      NUMBER(e.bandwidth_hz, 0, 3e7),
+      CHOICE(e.polarization, Value::horizontal, Value::vertical, Value::slant_45, Value::circular_left),
       {"antenna", [](Scenario&, Emitter& e, Random& r) { e.antenna = someAntenna(r); }},
       {"scan.kind",
        [](Scenario&, Emitter& e, Random& r) {
@@ -87,52 +88,19 @@ const std::vector<Edit>& emitterEdits() {
          e.scan.width_deg = 80;
          e.scan.rate_deg_s = 20;
        }},
-      {"scan.azimuth_deg", [](Scenario&, Emitter& e, Random& r) { e.scan.azimuth_deg = between(r, 0, 360); }},
-      {"scan.elevation_deg",
-       [](Scenario&, Emitter& e, Random& r) { e.scan.elevation_deg = between(r, -5, 20); }},
-      {"propagation",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.model = oneOf(
-             r, std::vector{PropagationModel::free_space, PropagationModel::horizon,
-                            PropagationModel::diffraction, PropagationModel::two_ray, PropagationModel::itm,
-                            PropagationModel::p528, PropagationModel::p1812, PropagationModel::p452});
-       }},
-      {"diffraction.method",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.diffraction.method =
-             oneOf(r, std::vector{propagation::DiffractionMethod::delta_bullington,
-                                  propagation::DiffractionMethod::single_edge,
-                                  propagation::DiffractionMethod::deygout});
-       }},
-      {"two_ray.sum",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.two_ray.sum =
-             oneOf(r, std::vector{propagation::TwoRaySum::coherent, propagation::TwoRaySum::envelope});
-       }},
-      {"two_ray.roughness_model",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.two_ray.roughness_model = oneOf(
-             r, std::vector{propagation::RoughnessModel::ament, propagation::RoughnessModel::miller_brown});
-       }},
-      {"itm.form",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.itm.form =
-             oneOf(r, std::vector{propagation::ItmForm::point_to_point, propagation::ItmForm::area});
-       }},
-      {"itm.time_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.time_percent = between(r, 5, 95); }},
-      {"itm.location_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.location_percent = between(r, 5, 95); }},
-      {"itm.situation_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.situation_percent = between(r, 5, 95); }},
-      {"itm.service",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.itm.service =
-             oneOf(r, std::vector{propagation::ItmService::single_message, propagation::ItmService::mobile,
-                                  propagation::ItmService::broadcast});
-       }},
-      {"itm.irregularity_m",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.irregularity_m = between(r, 10, 300); }},
+      NUMBER(e.scan.azimuth_deg, 0, 360),
+      NUMBER(e.scan.elevation_deg, -5, 20),
+      CHOICE(e.propagation.model, Value::free_space, Value::horizon, Value::diffraction, Value::two_ray,
+             Value::itm, Value::p528, Value::p1812, Value::p452),
+      CHOICE(e.propagation.diffraction.method, Value::delta_bullington, Value::single_edge, Value::deygout),
+      CHOICE(e.propagation.two_ray.sum, Value::coherent, Value::envelope),
+      CHOICE(e.propagation.two_ray.roughness_model, Value::ament, Value::miller_brown),
+      CHOICE(e.propagation.itm.form, Value::point_to_point, Value::area),
+      NUMBER(e.propagation.itm.time_percent, 5, 95),
+      NUMBER(e.propagation.itm.location_percent, 5, 95),
+      NUMBER(e.propagation.itm.situation_percent, 5, 95),
+      CHOICE(e.propagation.itm.service, Value::single_message, Value::mobile, Value::broadcast),
+      NUMBER(e.propagation.itm.irregularity_m, 10, 300),
       {"itm.siting",
        [](Scenario&, Emitter& e, Random& r) {
          e.propagation.itm.transmitter_siting =
@@ -140,58 +108,26 @@ const std::vector<Edit>& emitterEdits() {
          e.propagation.itm.receiver_siting =
              oneOf(r, std::vector{propagation::ItmSiting::random, propagation::ItmSiting::very_careful});
        }},
-      {"p528.time_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p528.time_percent = between(r, 0, 99); }},
-      {"p1812.time_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p1812.time_percent = between(r, 1, 50); }},
-      {"p1812.location_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p1812.location_percent = between(r, 1, 99); }},
-      {"p1812.clutter_height_m",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p1812.clutter_height_m = between(r, 0, 30); }},
-      {"p1812.zone",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.p1812.zone =
-             oneOf(r, std::vector{propagation::ClearAirZone::by_height, propagation::ClearAirZone::inland,
-                                  propagation::ClearAirZone::sea});
-       }},
-      {"p452.time_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p452.time_percent = between(r, 0.01, 50); }},
-      {"p452.refractivity_lapse_rate",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.p452.refractivity_lapse_rate = between(r, 20, 80);
-       }},
-      {"receiver.noise_figure_db",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.noise_figure_db = between(r, 1, 9); }},
-      {"receiver.antenna_temperature_k",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.antenna_temperature_k = between(r, 50, 400); }},
-      {"receiver.bandwidth_hz",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.bandwidth_hz = between(r, 1e5, 1e7); }},
-      {"receiver.losses_db",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.losses_db = between(r, 0, 4); }},
-      {"receiver.processing_gain_db",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.processing_gain_db = between(r, 0, 30); }},
-      {"receiver.polarization",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.receiver.polarization =
-             oneOf(r, std::vector{Polarization::horizontal, Polarization::circular_right});
-       }},
-      {"receiver.cross_polar_isolation_db",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.cross_polar_isolation_db = between(r, 15, 40); }},
+      NUMBER(e.propagation.p528.time_percent, 0, 99),
+      NUMBER(e.propagation.p1812.time_percent, 1, 50),
+      NUMBER(e.propagation.p1812.location_percent, 1, 99),
+      NUMBER(e.propagation.p1812.clutter_height_m, 0, 30),
+      CHOICE(e.propagation.p1812.zone, Value::by_height, Value::inland, Value::sea),
+      NUMBER(e.propagation.p452.time_percent, 0.01, 50),
+      NUMBER(e.propagation.p452.refractivity_lapse_rate, 20, 80),
+      NUMBER(e.receiver.noise_figure_db, 1, 9),
+      NUMBER(e.receiver.antenna_temperature_k, 50, 400),
+      NUMBER(e.receiver.bandwidth_hz, 1e5, 1e7),
+      NUMBER(e.receiver.losses_db, 0, 4),
+      NUMBER(e.receiver.processing_gain_db, 0, 30),
+      CHOICE(e.receiver.polarization, Polarization::horizontal, Polarization::circular_right),
+      NUMBER(e.receiver.cross_polar_isolation_db, 15, 40),
       {"receiver.pulses", [](Scenario&, Emitter& e, Random& r) { e.receiver.pulses = 1 + below(r, 30); }},
-      {"receiver.pfa",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.receiver.pfa = oneOf(r, std::vector{1e-8, 1e-4});
-       }},
+      CHOICE(e.receiver.pfa, 1e-8, 1e-4),
       {"receiver.swerling", [](Scenario&, Emitter& e, Random& r) { e.receiver.swerling = below(r, 5); }},
-      {"receiver.detection",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.receiver.detection =
-             oneOf(r, std::vector{scenario::DetectionMethod::exact, scenario::DetectionMethod::shnidman});
-       }},
-      {"receiver.required_signal_to_jammer_db",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.required_signal_to_jammer_db = between(r, 3, 20); }},
-      {"receiver.target_rcs_m2",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.target_rcs_m2 = between(r, 0.1, 20); }},
+      CHOICE(e.receiver.detection, Value::exact, Value::shnidman),
+      NUMBER(e.receiver.required_signal_to_jammer_db, 3, 20),
+      NUMBER(e.receiver.target_rcs_m2, 0.1, 20),
       {"active_s",
        [](Scenario&, Emitter& e, Random& r) {
          e.active_s = below(r, 2) == 0 ? std::vector<scenario::TimeInterval>{}
@@ -225,60 +161,33 @@ const std::vector<Edit>& emitterEdits() {
 
 const std::vector<Edit>& scenarioEdits() {
   static const std::vector<Edit> edits{
-      {"atmosphere.k_factor",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.k_factor = between(r, 1, 1.6); }},
-      {"atmosphere.pressure_hpa",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.pressure_hpa = between(r, 950, 1040); }},
-      {"atmosphere.temperature_k",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.temperature_k = between(r, 260, 310); }},
-      {"atmosphere.vapour_g_m3",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.vapour_g_m3 = between(r, 0, 20); }},
-      {"atmosphere.rain_mm_h",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.atmosphere.rain_mm_h = oneOf(r, std::vector{0., 5., 30.});
-       }},
-      {"atmosphere.rain_height_m",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.rain_height_m = between(r, 500, 4000); }},
-      {"atmosphere.gases",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.atmosphere.gases =
-             oneOf(r, std::vector{propagation::GasLosses::automatic, propagation::GasLosses::always,
-                                  propagation::GasLosses::never});
-       }},
-      {"atmosphere.sea_level_refractivity",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.sea_level_refractivity = between(r, 260, 380); }},
-      {"atmosphere.climate",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.atmosphere.climate =
-             oneOf(r, std::vector{propagation::RadioClimate::desert, propagation::RadioClimate::equatorial});
-       }},
-      {"ground.kind",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.ground.kind =
-             oneOf(r, std::vector{propagation::GroundKind::sea, propagation::GroundKind::dry_ground});
-       }},
-      {"ground.relative_permittivity",
-       [](Scenario& s, Emitter&, Random& r) { s.ground.relative_permittivity = between(r, 4, 60); }},
-      {"ground.conductivity_s_m",
-       [](Scenario& s, Emitter&, Random& r) { s.ground.conductivity_s_m = between(r, 0.001, 4); }},
-      {"ground.roughness_m",
-       [](Scenario& s, Emitter&, Random& r) { s.ground.roughness_m = between(r, 0, 2); }},
-      {"ground.surface_msl_m",
-       [](Scenario& s, Emitter&, Random& r) { s.ground.surface_msl_m = between(r, 0, 900); }},
+      NUMBER(s.atmosphere.k_factor, 1, 1.6),
+      NUMBER(s.atmosphere.pressure_hpa, 950, 1040),
+      NUMBER(s.atmosphere.temperature_k, 260, 310),
+      NUMBER(s.atmosphere.vapour_g_m3, 0, 20),
+      CHOICE(s.atmosphere.rain_mm_h, 0., 5., 30.),
+      NUMBER(s.atmosphere.rain_height_m, 500, 4000),
+      CHOICE(s.atmosphere.gases, Value::automatic, Value::always, Value::never),
+      NUMBER(s.atmosphere.sea_level_refractivity, 260, 380),
+      CHOICE(s.atmosphere.climate, Value::desert, Value::equatorial),
+      CHOICE(s.ground.kind, Value::sea, Value::dry_ground),
+      NUMBER(s.ground.relative_permittivity, 4, 60),
+      NUMBER(s.ground.conductivity_s_m, 0.001, 4),
+      NUMBER(s.ground.roughness_m, 0, 2),
+      NUMBER(s.ground.surface_msl_m, 0, 900),
       {"region.dims",
        [](Scenario& s, Emitter&, Random& r) {
          s.region.dims = {10 + below(r, 4), 9 + below(r, 4), 4 + below(r, 3)};
        }},
-      {"region.size_m", [](Scenario& s, Emitter&, Random& r) { s.region.size_m.x = between(r, 12e3, 18e3); }},
-      {"region.origin",
-       [](Scenario& s, Emitter&, Random& r) { s.region.origin.height_msl_m = between(r, 0, 500); }},
+      NUMBER(s.region.size_m.x, 12e3, 18e3),
+      NUMBER(s.region.origin.height_msl_m, 0, 500),
       {"receivers",
        [](Scenario& s, Emitter&, Random& r) {
          s.receivers.front().gain_dbi = between(r, 0, 9);
          s.receivers.front().polarization = propagation::Polarization::vertical;
          s.receivers.front().bandwidth_hz = between(r, 1e5, 1e8);
        }},
-      {"bands", [](Scenario& s, Emitter&, Random& r) { s.bands.front().end_hz = between(r, 1e9, 5e9); }},
+      NUMBER(s.bands.front().end_hz, 1e9, 5e9),
       {"output.quantities",
        [](Scenario& s, Emitter&, Random& r) {
          s.output.quantities = oneOf(r, std::vector<std::vector<std::string>>{
@@ -288,20 +197,12 @@ const std::vector<Edit>& scenarioEdits() {
                                             {"sinr_db", "intercept_margin_db"},
                                             {"burn_through_margin_db", "field_strength_dbuvm"}});
        }},
-      {"output.combine",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.output.combine = oneOf(r, std::vector{CombineMode::sum, CombineMode::max, CombineMode::per_emitter,
-                                                 CombineMode::per_band});
-       }},
-      {"output.radar_look",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.output.radar_look = oneOf(r, std::vector{scenario::RadarAim::scan, scenario::RadarAim::target});
-       }},
+      CHOICE(s.output.combine, Value::sum, Value::max, Value::per_emitter, Value::per_band),
+      CHOICE(s.output.radar_look, Value::scan, Value::target),
       {"output.wanted_emitter",
        [](Scenario& s, Emitter&, Random& r) { s.output.wanted_emitter = below(r, 3); }},
-      {"output.floor", [](Scenario& s, Emitter&, Random& r) { s.output.floor = between(r, -200, -60); }},
-      {"output.count_threshold_dbwm2",
-       [](Scenario& s, Emitter&, Random& r) { s.output.count_threshold_dbwm2 = between(r, -90, -40); }},
+      NUMBER(s.output.floor, -200, -60),
+      NUMBER(s.output.count_threshold_dbwm2, -90, -40),
       {"name", [](Scenario& s, Emitter&, Random&) { s.hash = (s.name += "'"); }},
       {"emitters: one more",
        [](Scenario& s, Emitter&, Random& r) {
@@ -322,9 +223,9 @@ const std::vector<Edit>& scenarioEdits() {
 std::string editValue(Scenario& scenario, Random& random) {
   const auto& edits = below(random, 5) < 3 ? emitterEdits() : scenarioEdits();
   const Edit& edit = edits[static_cast<std::size_t>(below(random, edits.size()))];
-  edit.apply(scenario, scenario.emitters[static_cast<std::size_t>(below(random, scenario.emitters.size()))],
-             random);
-  return edit.key;
+  edit.second(scenario, scenario.emitters[static_cast<std::size_t>(below(random, scenario.emitters.size()))],
+              random);
+  return edit.first;
 }
 
 /// Makes an edited scenario of another one. @return description of the edit

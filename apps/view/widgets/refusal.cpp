@@ -3,6 +3,7 @@
 #include <imgui_internal.h>
 
 #include <array>
+#include <cstring>
 #include <optional>
 
 #include "apps/view/widgets/glyphs.h"
