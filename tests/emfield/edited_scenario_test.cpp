@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <random>
 
+#include "tests/emfield/edited_battlefield.h"
 #include "tests/emfield/made_terrain.h"
-#include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"
 #include "tests/support/gpu.h"
 #include "tests/support/on_backends.h"
@@ -16,45 +15,8 @@ namespace emscape::emfield {
 namespace {
 
 using namespace emscape::emfield::testing;
-using propagation::PropagationModel;
 using scenario::CombineMode;
-using scenario::Emitter;
-using scenario::EmitterKind;
-using scenario::Scenario;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-
-constexpr double kLatitude_deg = 45, kLongitude_deg = 7;
-
-using Random = std::mt19937;
-
-double between(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-int below(Random& random, std::size_t count) {
-  return std::uniform_int_distribution<int>(0, static_cast<int>(count) - 1)(random);
-}
-template <class T>
-T oneOf(Random& random, const std::vector<T>& values) {
-  return values[static_cast<std::size_t>(below(random, values.size()))];
-}
-
-GeodeticPosition somewhere(Random& random) {
-  return {kLatitude_deg + between(random, -0.06, 0.06), kLongitude_deg + between(random, -0.08, 0.08),
-          between(random, 1800, 3000)};
-}
-
-scenario::AntennaPtr someAntenna(Random& random) {
-  switch (below(random, 3)) {
-    case 0:
-      return scenario::makeIsotropic();
-    case 1:
-      return scenario::makeSinc(30, between(random, 2, 8), between(random, 2, 8), -40);
-    default:
-      return scenario::makeGaussian(between(random, 20, 35), between(random, 2, 20), 10, -35);
-  }
-}
 
 /// One kind of edit, named by the key that it changes. Solvers may refuse the result.
 using Edit = std::pair<const char*, std::function<void(Scenario&, Emitter&, Random&)>>;
@@ -231,61 +193,6 @@ std::string editValue(Scenario& scenario, Random& random) {
 /// Makes an edited scenario of another one. @return description of the edit
 using Editor = std::function<std::string(Scenario&, Random&)>;
 
-/// A rotating radar, a jammer on a track, a fixed radar, and two transmitters, with one model or all models.
-std::shared_ptr<Scenario> battlefield(Random& random, FrameKind frame, std::vector<PropagationModel> models) {
-  auto scenario = emptyScenario(frame, kLatitude_deg, kLongitude_deg, {15e3, 14e3, 4000}, {12, 11, 5});
-  scenario->output.floor = -150;
-  const char* const names[] = {"radar", "jammer", "second radar", "radio", "beacon"};
-  for (std::size_t e = 0; e < std::size(names); ++e) {
-    Emitter emitter = plainEmitter(names[e], 0);
-    emitter.propagation.model = models[e % models.size()];
-    emitter.antenna = someAntenna(random);
-    if (e == 0 || e == 2) emitter.kind = EmitterKind::radar;
-    if (e == 1) emitter.kind = EmitterKind::jammer;
-    if (e == 0) emitter.scan.kind = scenario::ScanKind::rotate;
-    emitter.scan.rate_rpm = 5;
-    addEmitter(*scenario, somewhere(random), emitter);
-  }
-  scenario::TrackPoint end = scenario->platforms[1].track.front();
-  end.t_s = 10;
-  end.position.longitude_deg += 0.03;
-  scenario->platforms[1].track.push_back(end);
-  scenario->receivers.emplace_back();
-  scenario->receivers.front().noise_figure_db = 5;
-  scenario->receivers.front().bandwidth_hz = 1e6;
-  scenario->receivers.front().sensitivity_dbm = -90;
-  scenario->output.wanted_emitter = 0;
-  scenario->bands = {{"low", 1e8, 2e9}, {"high", 2e9, 2e10}};
-  return scenario;
-}
-
-std::string withoutCount(const std::string& warning) {
-  return warning.substr(0, warning.find(" ("));
-}
-
-void expectEqualSolvers(const FieldSolver& updated, const FieldSolver& fresh) {
-  ASSERT_EQ(updated.channels().size(), fresh.channels().size());
-  ASSERT_EQ(updated.volumes().size(), fresh.volumes().size());
-  EXPECT_EQ(updated.groundHeights_m().size(), fresh.groundHeights_m().size());
-  for (std::size_t c = 0; c < fresh.channels().size(); ++c) {
-    SCOPED_TRACE(fresh.channels()[c].name);
-    EXPECT_EQ(updated.channels()[c].name, fresh.channels()[c].name);
-    const auto a = updated.volumes()[c].host(), b = fresh.volumes()[c].host();
-    EXPECT_TRUE(a->info == b->info);
-    EXPECT_EQ(a->info.extra, b->info.extra);
-    EXPECT_EQ(a->first_valid_k, b->first_valid_k);
-    ASSERT_EQ(a->values.size(), b->values.size());
-    long long different = 0;
-    for (std::size_t v = 0; v < a->values.size(); ++v) different += a->values[v] != b->values[v] ? 1 : 0;
-    ASSERT_EQ(different, 0) << "of " << a->values.size() << " voxels";
-  }
-  std::vector<std::string> warnings;
-  for (const std::string& warning : updated.warnings()) warnings.push_back(withoutCount(warning));
-  for (const std::string& warning : fresh.warnings()) {
-    EXPECT_THAT(warnings, ::testing::Contains(withoutCount(warning)));
-  }
-}
-
 /// Gives a solver one edit after the other, and compares each result with that of a new solver. Edits that a
 /// new solver refuses must also be refused by the update, and leave the solver unchanged.
 void checkEdits(std::shared_ptr<const Scenario> scenario, std::vector<scenario::TerrainPtr> terrains,
@@ -428,188 +335,6 @@ TEST(CudaEditedScenario, EqualsANewSolver) {
   auto jammed = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
   jammed->output.quantities = {"detection_probability", "jammer_to_signal_db", "burn_through_margin_db"};
   checkEdits(jammed, hills(), 60, editValue, random, options);
-}
-
-/// Solves a scenario and then an edited one.
-class EditedOnce : public ::testing::Test {
- protected:
-  void SetUp() override {
-    Random random(7);
-    scenario_ = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
-    solver_ = std::make_unique<FieldSolver>(scenario_, nullptr, FieldOptions{});
-    solver_->update(scenario::snapshotAt(scenario_, nullptr, 0));
-  }
-  FieldChanged after(const std::function<void(Scenario&)>& edit) {
-    auto edited = std::make_shared<Scenario>(*scenario_);
-    edit(*edited);
-    const FieldChanged changed = solver_->update(scenario::snapshotAt(edited, nullptr, 0));
-    scenario_ = edited;
-    return changed;
-  }
-  std::shared_ptr<Scenario> scenario_;
-  std::unique_ptr<FieldSolver> solver_;
-};
-
-TEST_F(EditedOnce, PowerRepeatsOnlyCombinationOfThatEmitter) {
-  const FieldChanged changed = after([](Scenario& s) { s.emitters[3].power_w *= 2; });
-  EXPECT_TRUE(changed.any);
-  EXPECT_FALSE(changed.grid);
-  EXPECT_FALSE(changed.channels);
-  EXPECT_THAT(changed.moved, IsEmpty());
-  EXPECT_THAT(changed.turned, ElementsAre(3));
-  EXPECT_THAT(changed.volumes, ElementsAre(0));
-}
-
-TEST_F(EditedOnce, ModelRepeatsOnlyGeometryOfThatEmitter) {
-  const FieldChanged changed =
-      after([](Scenario& s) { s.emitters[3].propagation.model = PropagationModel::two_ray; });
-  EXPECT_THAT(changed.moved, ElementsAre(3));
-  EXPECT_THAT(changed.turned, IsEmpty());
-}
-
-TEST_F(EditedOnce, FloorRepeatsOnlyTheProduct) {
-  const FieldChanged changed = after([](Scenario& s) { s.output.floor = -80; });
-  EXPECT_THAT(changed.moved, IsEmpty());
-  EXPECT_THAT(changed.turned, IsEmpty());
-  EXPECT_THAT(changed.volumes, ElementsAre(0));
-  EXPECT_EQ(solver_->stageTimes().combine_ms, 0);
-}
-
-TEST_F(EditedOnce, QuantitiesKeepTheGeometry) {
-  const FieldChanged changed = after([](Scenario& s) { s.output.quantities = {"snr_db", "emitter_count"}; });
-  EXPECT_TRUE(changed.channels);
-  EXPECT_FALSE(changed.grid);
-  EXPECT_THAT(changed.moved, IsEmpty());
-  EXPECT_THAT(changed.volumes, ElementsAre(0, 1));
-}
-
-TEST_F(EditedOnce, OtherQuantitiesOfTheOptionsKeepTheGeometry) {
-  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario_, nullptr, 0);
-  EXPECT_THROW(solver_->setQuantities({"nonsense"}, scenario_), Error);
-  EXPECT_FALSE(solver_->update(snapshot).any);
-  solver_->setQuantities({"snr_db", "emitter_count"}, scenario_);
-  EXPECT_EQ(solver_->channels().size(), 1U) << "until the next update";
-  EXPECT_THAT(solver_->update(snapshot).moved, IsEmpty());
-  FieldOptions options;
-  options.quantities = {"snr_db", "emitter_count"};
-  FieldSolver fresh(scenario_, nullptr, options);
-  fresh.update(snapshot);
-  expectEqualSolvers(*solver_, fresh);
-  EXPECT_FALSE(solver_->update(snapshot).any);
-}
-
-TEST_F(EditedOnce, RegionRepeatsEverything) {
-  EXPECT_TRUE(after([](Scenario& s) { s.region.dims = {9, 9, 4}; }).grid);
-  EXPECT_EQ(solver_->grid().dims.x, 9);
-  EXPECT_EQ(solver_->volumes().front().grid().dims.z, 4);
-}
-
-TEST_F(EditedOnce, AddedAndRemovedEmittersKeepTheGeometryOfTheOthers) {
-  const FieldChanged added = after([](Scenario& s) {
-    Random random(9);
-    addEmitter(s, somewhere(random), plainEmitter("new", 0));
-    std::swap(s.emitters[1], s.emitters.back());
-  });
-  EXPECT_THAT(added.moved, ElementsAre(1));
-  const FieldChanged removed = after([](Scenario& s) { s.emitters.erase(s.emitters.begin()); });
-  EXPECT_THAT(removed.moved, IsEmpty());
-  const FieldChanged changed = after([](Scenario& s) {
-    s.emitters.pop_back();
-    s.emitters[2].frequency_hz *= 2;
-  });
-  EXPECT_THAT(changed.moved, ElementsAre(2));
-  FieldSolver fresh(scenario_, nullptr, {});
-  fresh.update(scenario::snapshotAt(scenario_, nullptr, 0));
-  expectEqualSolvers(*solver_, fresh);
-}
-
-TEST_F(EditedOnce, ARefusedEmitterLeavesTheGeometryOfTheOthers) {
-  auto refused = std::make_shared<Scenario>(*scenario_);
-  refused->emitters.pop_back();
-  refused->emitters[3].propagation.model = PropagationModel::p528;
-  refused->emitters[3].propagation.p528.time_percent = 200;
-  EXPECT_THROW(solver_->update(scenario::snapshotAt(refused, nullptr, 0)), Error);
-  EXPECT_THAT(after([](Scenario& s) { s.emitters[3].power_w *= 2; }).moved, IsEmpty());
-  FieldSolver fresh(scenario_, nullptr, {});
-  fresh.update(scenario::snapshotAt(scenario_, nullptr, 0));
-  expectEqualSolvers(*solver_, fresh);
-}
-
-TEST_F(EditedOnce, ValueWithoutEffectComputesNoVolume) {
-  const auto before = solver_->volumes().front().dense();
-  const FieldChanged changed = after([](Scenario& s) {
-    s.hash = "another";
-    s.receivers.front().gain_dbi = 9;
-    s.emitters[3].receiver.noise_figure_db = 7;
-    s.emitters[0].waveform = scenario::Waveform{1000, 1e-6, {}};
-    s.placed_receivers.emplace_back();
-    s.placed_receivers.back().platform = 0;
-    s.placed_receivers.back().antenna = scenario::makeIsotropic();
-    s.targets.emplace_back();
-    s.targets.back().platform = 1;
-  });
-  EXPECT_FALSE(changed.any);
-  EXPECT_EQ(solver_->volumes().front().dense(), before);
-  EXPECT_EQ(solver_->volumes().front().info().extra.at("scenario_hash"), "another");
-}
-
-TEST_F(EditedOnce, NamesSidesAndSymbolsComputeNoVolume) {
-  after([](Scenario& s) {
-    s.output.combine = CombineMode::per_emitter;
-    s.emitters[3].antenna = scenario::makeSinc(45, 0.3, 0.3, -60);
-    s.emitters[3].frequency_hz = 9e9;
-  });
-  const auto before = solver_->volumes()[3].dense();
-  const FieldChanged changed = after([](Scenario& s) {
-    s.emitters[3].name = "renamed";
-    s.platforms[0].name = "elsewhere";
-    s.platforms[0].side = scenario::Side::hostile;
-    s.platforms[0].sidc = "10031000001101000000";
-  });
-  EXPECT_TRUE(changed.channels) << "by its name";
-  EXPECT_THAT(changed.moved, IsEmpty());
-  EXPECT_THAT(changed.turned, IsEmpty());
-  EXPECT_THAT(changed.volumes, IsEmpty());
-  EXPECT_EQ(solver_->volumes()[3].dense(), before);
-  EXPECT_EQ(solver_->channels()[3].name, "power_density_dbwm2:renamed");
-  EXPECT_EQ(solver_->volumes()[3].info().quantity, "power_density_dbwm2:renamed");
-  EXPECT_THAT(solver_->warnings(), ::testing::Contains(HasSubstr("'renamed': voxels closer than")));
-  EXPECT_THAT(solver_->warnings(), ::testing::Not(::testing::Contains(HasSubstr("'radio'"))));
-}
-
-TEST_F(EditedOnce, ResolvedWarningsDisappear) {
-  after([](Scenario& s) {
-    s.emitters[3].frequency_hz = 9e9;
-    s.emitters[3].antenna = scenario::makeSinc(45, 0.3, 0.3, -60);
-  });
-  EXPECT_THAT(solver_->warnings(),
-              ::testing::Contains(HasSubstr("'radio': voxels closer than the far-field distance")));
-  after([](Scenario& s) { s.emitters[3].antenna = scenario::makeIsotropic(); });
-  EXPECT_THAT(solver_->warnings(), ::testing::Not(::testing::Contains(HasSubstr("'radio'"))));
-}
-
-TEST_F(EditedOnce, RefusedEditKeepsTheField) {
-  const auto before = solver_->volumes().front().dense();
-  auto refused = std::make_shared<Scenario>(*scenario_);
-  refused->emitters[3].propagation.model = PropagationModel::p528;
-  refused->emitters[3].propagation.p528.time_percent = 200;
-  EXPECT_THROW(solver_->update(scenario::snapshotAt(refused, nullptr, 0)), Error);
-  EXPECT_EQ(solver_->volumes().front().dense(), before);
-  after([](Scenario& s) { s.emitters[3].power_w *= 2; });
-  FieldSolver fresh(scenario_, nullptr, {});
-  fresh.update(scenario::snapshotAt(scenario_, nullptr, 0));
-  expectEqualSolvers(*solver_, fresh);
-}
-
-TEST_F(EditedOnce, OtherElevationFilesMustBeGiven) {
-  auto edited = std::make_shared<Scenario>(*scenario_);
-  auto snapshot = scenario::snapshotAt(scenario_, nullptr, 0);
-  edited->terrain = scenario::TerrainSpec{{"other.tif"}, {}, {}};
-  snapshot.scenario = edited;
-  EXPECT_EQ(
-      test::errorOf([&] { solver_->update(snapshot); }),
-      "test.yaml: the edited scenario names other elevation files: they must be loaded and given to the "
-      "update");
 }
 
 TEST(EditedScenario, AnUpdateThatFailsOverAHoleCanBeFollowedByOthers) {
