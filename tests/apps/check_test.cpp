@@ -26,9 +26,7 @@ TEST(Check, PassesAFolderWhoseFiguresAreMet) {
   put(folder, "geoid/check_points.csv", kGoodGeoid);
   put(folder, "pe/ntia_lfmf_check.csv", "");
   put(folder, "notes/todo.txt", "");
-  const ProgramResult result = run({"check", folder.path().string(), "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell({"check", folder.path().string(), "--json"}).out);
   EXPECT_EQ(report["pass"], true);
   ASSERT_EQ(report["datasets"].size(), 1u);
   const json& geoid = report["datasets"][0];
@@ -91,9 +89,7 @@ TEST(Check, TakesTheFolderOfOneFamily) {
       "frequency_hz,sigma_h_m,grazing_deg,ament,miller_brown\n3e9,0.031875,0.5,0.999388,0.999389\n");
   put(folder, "pe/README.md", "");
   put(folder, "pe/more.csv", "");
-  const ProgramResult result = run({"check", (folder.path() / "pe").string() + "/", "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell({"check", (folder.path() / "pe").string() + "/", "--json"}).out);
   ASSERT_EQ(report["datasets"].size(), 1u);
   EXPECT_EQ(report["datasets"][0]["name"], "pe/roughness.csv");
   EXPECT_EQ(report["unknown"], json({"pe/more.csv"}));

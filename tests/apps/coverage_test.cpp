@@ -22,10 +22,10 @@ Arguments coverage(const TemporaryFolder& folder, const Arguments& more) {
 
 TEST(Coverage, WritesMapsPicturesAndAReport) {
   const TemporaryFolder folder;
-  const ProgramResult result = run(coverage(folder, {"--heights", "agl:50;msl:1200.5", "--products",
-                                                     "covered,best", "--times", "80", "--json", "--quiet"}));
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report =
+      json::parse(runWell(coverage(folder, {"--heights", "agl:50;msl:1200.5", "--products", "covered,best",
+                                            "--times", "80", "--json", "--quiet"}))
+                      .out);
   EXPECT_EQ(report, json::parse(readFile(folder / "out/report.json")));
   for (const char* key : {"emscape", "scenario", "scenario_hash", "quantity", "threshold", "crs", "cell_m",
                           "pixels", "emitters", "warnings"}) {
@@ -63,9 +63,7 @@ TEST(Coverage, WritesMapsPicturesAndAReport) {
 TEST(Coverage, SLOW_TwoRunsWriteTheSameBytes) {
   const TemporaryFolder first, second;
   for (const TemporaryFolder* folder : {&first, &second}) {
-    const ProgramResult result =
-        run(coverage(*folder, {"--products", "value,fraction", "--times", "70:80:10"}));
-    ASSERT_EQ(result.status, 0) << result.err;
+    runWell(coverage(*folder, {"--products", "value,fraction", "--times", "70:80:10"}));
   }
   ASSERT_EQ(first.files(), second.files());
   for (const std::string& file : first.files())
@@ -74,10 +72,7 @@ TEST(Coverage, SLOW_TwoRunsWriteTheSameBytes) {
 
 TEST(Coverage, SLOW_RemovesTheOutputsOfAnEarlierRun) {
   const TemporaryFolder folder;
-  const auto runWith = [&](const Arguments& more) {
-    const ProgramResult result = run(coverage(folder, more));
-    EXPECT_EQ(result.status, 0) << result.err;
-  };
+  const auto runWith = [&](const Arguments& more) { runWell(coverage(folder, more)); };
   runWith({"--products", "value,count,best", "--quantity", "detection_probability", "--times", "80",
            "--format", "cog,png,gpkg"});
   const std::string kept = folder / "out/maps/count_agl150m_t80s.png";

@@ -52,8 +52,7 @@ TEST(ForeignFolder, SLOW_FilesOfTheUserThatAreNamedLikePartsAreKept) {
   const fs::path empty = folder.path() / "out/folder.part-54321";
   fs::create_directory(empty);
   for (const Arguments& arguments : writersInto(folder)) {
-    const ProgramResult result = run(arguments);
-    ASSERT_EQ(result.status, 0) << result.err;
+    runWell(arguments);
     for (const std::string& file : kept)
       EXPECT_EQ(readFile(folder / file), "data") << arguments[0] << ": " << file;
     EXPECT_TRUE(fs::is_directory(empty)) << arguments[0];

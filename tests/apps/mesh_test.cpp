@@ -25,8 +25,7 @@ Arguments simulate(const std::string& folder, const Arguments& more = {}) {
 TEST(MeshSeries, SLOW_IsReproducible) {
   const TemporaryFolder folder;
   for (const char* name : {"a", "b"}) {
-    const ProgramResult result = run(simulate(folder / name, {"--mesh", "terrain:9,4"}));
-    ASSERT_EQ(result.status, 0) << result.err;
+    const ProgramResult result = runWell(simulate(folder / name, {"--mesh", "terrain:9,4"}));
   }
   for (const char* file : {"jacksboro.pvd", "jacksboro_0001.vtu", "jacksboro_0003.vtu", "series.json"}) {
     EXPECT_EQ(readFile(folder / ("a/" + std::string(file))), readFile(folder / ("b/" + std::string(file))))
@@ -37,9 +36,7 @@ TEST(MeshSeries, SLOW_IsReproducible) {
   EXPECT_EQ(run(simulate(folder / "a", {"--mesh", "terrain:9,5", "--resume"})).status, 3);
 
   for (const char* input : {"a", "a/jacksboro.pvd"}) {
-    const ProgramResult described = run({"info", folder / input, "--json"});
-    ASSERT_EQ(described.status, 0) << described.err;
-    const json info = json::parse(described.out);
+    const json info = json::parse(runWell({"info", folder / input, "--json"}).out);
     EXPECT_EQ(info["kind"], "mesh");
     EXPECT_EQ(info["steps"], 3);
     EXPECT_EQ(info["points"], 20 * 18 * 10);
@@ -89,9 +86,7 @@ TEST(MeshSeries, SLOW_ScenarioIsDrawnLikeItsFiles) {
   const auto draw = [&](Arguments arguments, const Arguments& more) {
     arguments.insert(arguments.begin(), "render");
     for (const Arguments& some : {picture, more}) arguments.insert(arguments.end(), some.begin(), some.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 0) << result.err;
-    return json::parse(result.out);
+    return json::parse(runWell(arguments).out);
   };
   const std::string scenario = shippedScenario("jacksboro.yaml");
   const Arguments computed{scenario,         "--mesh",  "terrain:9,4", "--set", "region.dims=[20, 18, 10]",

@@ -104,8 +104,7 @@ TEST_F(Outputs, OfCoverageDoNotReplaceAUsersFile) {
   const Arguments again{"coverage", quick_, "-o", folder_ / "maps", "--cell", "2000",
                         "--format", "png",  "-q"};
   EXPECT_EQ(run(again).status, 0);
-  const ProgramResult second = run(again);
-  EXPECT_EQ(second.status, 0) << second.err;
+  runWell(again);
 }
 
 TEST_F(Outputs, OfCoverageAndCompareDoNotReplaceAnElevationFile) {
@@ -133,8 +132,7 @@ TEST_F(Outputs, OfCoverageAndCompareDoNotReplaceAnElevationFile) {
   EXPECT_TRUE(readFile(folder_ / map) == readFile(folder_ / "data/jacksboro.tif"));
   fs::rename(folder_ / map, folder_ / "maps/country.tif");  // a product is named "count"
   withElevations("maps/country.tif");
-  const ProgramResult result = run(coverage);
-  EXPECT_EQ(result.status, 0) << result.err;
+  runWell(coverage);
   EXPECT_TRUE(readFile(folder_ / "maps/country.tif") == readFile(folder_ / "data/jacksboro.tif"));
 }
 
@@ -155,8 +153,7 @@ TEST_F(Outputs, OfASeriesDoNotReplaceAFileOfTheScenario) {
       EXPECT_EQ(readFile(track), points);
     }
   }
-  const ProgramResult beside = run({"simulate", quick_, "-o", folder_.path().string(), "--times", "0", "-q"});
-  EXPECT_EQ(beside.status, 0) << beside.err;
+  runWell({"simulate", quick_, "-o", folder_.path().string(), "--times", "0", "-q"});
 }
 
 TEST_F(Outputs, BeyondTheLimitOfAFilesSizeAreAnErrorWithoutRemains) {
@@ -191,9 +188,8 @@ TEST_F(Outputs, AreCompleteAtProcessorTimeLimit) {
 
 TEST_F(Outputs, ReplaceAForeignSeriesAsAWhole) {
   const auto simulate = [&](const std::string& scenario, const std::string& times) {
-    const ProgramResult result = run({"simulate", scenario, "-o", folder_ / "s", "--times", times, "--set",
-                                      "region.dims=[8, 8, 2]", "--force", "-q"});
-    EXPECT_EQ(result.status, 0) << result.err;
+    runWell({"simulate", scenario, "-o", folder_ / "s", "--times", times, "--set", "region.dims=[8, 8, 2]",
+             "--force", "-q"});
   };
   simulate(links_, "0:1");
   simulate(quick_, "0:2");
@@ -223,8 +219,7 @@ TEST(Results, OfAFieldWithoutAnyValueAreToldWithTheirLikelyCause) {
     Arguments arguments{"simulate", quick(),      "--times", "0:2:1", "--force",
                         "-o",       folder / "s", "--set",   edit};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult simulated = run(arguments);
-    EXPECT_EQ(simulated.status, 0) << simulated.err;
+    const ProgramResult simulated = runWell(arguments);
     arguments = {"render", quick(), "--times", "0", "--size", "64x48", "-o", folder / "a.png", "--set", edit};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ProgramResult drawn = run(arguments);
@@ -261,9 +256,8 @@ TEST(Results, PicturesOfAnEarlierRunAreNamedAndKept) {
 TEST(Results, OfTallMapsHaveAPictureThatCanBeDrawn) {
   const TemporaryFolder folder;
   const ProgramResult result =
-      run({"coverage", quick(), "-o", folder / "o", "--area", "bbox:3,-85,7,85", "--cell", "100000",
-           "--products", "value", "--times", "0", "--format", "cog"});
-  EXPECT_EQ(result.status, 0) << result.err;
+      runWell({"coverage", quick(), "-o", folder / "o", "--area", "bbox:3,-85,7,85", "--cell", "100000",
+               "--products", "value", "--times", "0", "--format", "cog"});
 }
 
 TEST(Results, OfPlotsBeyondTheMemoryAreRefusedBeforeTheWork) {

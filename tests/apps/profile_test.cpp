@@ -27,9 +27,7 @@ Arguments blockedPath(const Arguments& more = {}) {
 }
 
 TEST(Profile, JsonHasContractKeys) {
-  const ProgramResult result = run(blockedPath({"--json", "--model", "diffraction,free_space"}));
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell(blockedPath({"--json", "--model", "diffraction,free_space"})).out);
   for (const char* key : {"scenario", "emitter", "time_s", "time_utc", "active", "frequency_hz", "from", "to",
                           "geometry", "obstacles", "model", "model_why", "excess_db", "excess_parts_db",
                           "budget", "compared", "warnings", "verdict", "profile"}) {
@@ -54,8 +52,7 @@ TEST(Profile, JsonHasContractKeys) {
 }
 
 TEST(Profile, ATableEndsWithTheVerdict) {
-  const ProgramResult result = run(blockedPath());
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell(blockedPath());
   for (const char* part :
        {"Geometry", "Obstacles", "Budget by '", "EIRP along the ray", "decides", "Blocked: "})
     EXPECT_THAT(result.out, HasSubstr(part));
@@ -76,21 +73,18 @@ TEST(Profile, WithoutAnEpochATimeIsInSecondsAlone) {
 }
 
 TEST(Profile, RadarReportsDetection) {
-  const ProgramResult result =
-      run({"profile", jacksboro(), "--emitter", "search radar", "--to", "36.35,-84.25,900", "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json budget = json::parse(result.out)["budget"];
+  const json budget = json::parse(
+      runWell({"profile", jacksboro(), "--emitter", "search radar", "--to", "36.35,-84.25,900", "--json"})
+          .out)["budget"];
   for (const char* key : {"snr_db", "required_snr_db", "detection_probability"})
     EXPECT_TRUE(budget.contains(key)) << key;
 }
 
 TEST(Profile, DrawsPicturesOfEitherKind) {
   const TemporaryFolder folder;
-  const ProgramResult png = run(blockedPath({"--plot", folder / "path.png", "--size", "700x400"}));
-  ASSERT_EQ(png.status, 0) << png.err;
+  const ProgramResult png = runWell(blockedPath({"--plot", folder / "path.png", "--size", "700x400"}));
   EXPECT_EQ(readFile(folder / "path.png").substr(1, 3), "PNG");
-  const ProgramResult svg = run(blockedPath({"--plot", folder / "path.svg"}));
-  ASSERT_EQ(svg.status, 0) << svg.err;
+  const ProgramResult svg = runWell(blockedPath({"--plot", folder / "path.svg"}));
   EXPECT_THAT(readFile(folder / "path.svg"), testing::AllOf(HasSubstr("<svg"), HasSubstr("</svg>")));
   EXPECT_EQ(folder.files().size(), 2u);
 }
@@ -129,9 +123,7 @@ TEST(Profile, RefusesPlotsOfOtherKindsAndUnknownModels) {
 }
 
 TEST(BenchModels, SLOW_JsonHasContractKeys) {
-  const ProgramResult result = run({"bench", "models", "--repeats", "1", "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell({"bench", "models", "--repeats", "1", "--json"}).out);
   std::vector<std::string> models;
   for (const json& timing : report["models"]) {
     models.push_back(timing["model"]);

@@ -35,8 +35,7 @@ measures:
 
 /// Runs to the end, and expects success.
 void compute(const Arguments& arguments) {
-  const ProgramResult result = run(arguments);
-  ASSERT_EQ(result.status, 0) << result.err;
+  runWell(arguments);
 }
 
 void expectSameResults(const TemporaryFolder& folder, const std::string& a, const std::string& b) {
@@ -232,9 +231,7 @@ TEST(Study, SLOW_AFullDiskEndsTheStudyAndItCanBeResumed) {
 
 TEST(Study, PlanListsWork) {
   const TemporaryFolder folder;
-  const ProgramResult result = run({"study", study(folder), "--plan", "--json", "--quiet"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json plan = json::parse(result.out);
+  const json plan = json::parse(runWell({"study", study(folder), "--plan", "--json", "--quiet"}).out);
   EXPECT_EQ(plan["variants"], 40);
   EXPECT_EQ(plan["parts"], 8);
   EXPECT_EQ(plan["parameters"][0]["class"], "power");
@@ -256,8 +253,7 @@ sweep:
 measures:
   - {name: seen again, product: revisit, height: "agl:300"}
 )");
-  const ProgramResult result = run({"study", file, "-o", folder / "out"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell({"study", file, "-o", folder / "out"});
   EXPECT_THAT(result.out, HasSubstr("seen again               no value in any variant\n"));
 }
 

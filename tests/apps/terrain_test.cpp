@@ -85,8 +85,7 @@ receivers:
 
 TEST_F(TerrainProgram, DescribesAndDrawsFilesAndScenarios) {
   const std::string tile = sourceFile("scenarios/data/jacksboro.tif");
-  const ProgramResult result = run({"terrain", tile, "--json", "-o", folder_ / "a.png"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell({"terrain", tile, "--json", "-o", folder_ / "a.png"});
   EXPECT_EQ(readFile(folder_ / "a.png").substr(1, 3), "PNG");
   const json report = json::parse(result.out);
   const json& file = report.at("files").at(0);

@@ -33,8 +33,7 @@ Arguments exposure(const Arguments& more) {
 void expectSameTwice(const TemporaryFolder& folder, const std::function<Arguments(const std::string&)>& of) {
   for (const char* run_name : {"one", "two"}) {
     std::filesystem::create_directories(folder / run_name);
-    const ProgramResult result = run(of(folder / run_name));
-    ASSERT_EQ(result.status, 0) << result.err;
+    runWell(of(folder / run_name));
   }
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "one")) {
@@ -67,10 +66,9 @@ TEST(Vertical, WritesFilesOfEachKindAndTheSameOnesAgain) {
 
 TEST(Vertical, ABlakeChartHasTheContourOfFreeSpace) {
   const TemporaryFolder folder;
-  const ProgramResult result = run(vertical({"--emitter", "search radar", "--blake", "--range", "100000",
-                                             "-o", folder / "b.svg", "--json", "--quiet"}));
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json chart = json::parse(result.out);
+  const json chart = json::parse(runWell(vertical({"--emitter", "search radar", "--blake", "--range",
+                                                   "100000", "-o", folder / "b.svg", "--json", "--quiet"}))
+                                     .out);
   EXPECT_TRUE(chart["smooth_earth"]);
   EXPECT_NEAR(chart["station_msl_m"], 15, 0.01) << "above the smooth surface";
   EXPECT_GT(chart["azimuths"][0]["free_space"].size(), 0u);

@@ -91,6 +91,14 @@ class Window : public testing::Test {
     return run(arguments, environment());
   }
 
+  /// Runs a script and quits; the test fails if a step of it does.
+  void play(const std::string& script, const Arguments& more = {}) {
+    const ProgramResult result = runScript(script + R"({"do":"quit"})"
+                                                    "\n",
+                                           more);
+    EXPECT_EQ(result.status, 0) << result.err;
+  }
+
   std::string logFile() const { return folder_ / "log.jsonl"; }
   /// Lines of the log; with a name those of that event.
   std::vector<Json> log(const std::string& event = "") const {
