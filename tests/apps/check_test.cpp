@@ -117,12 +117,12 @@ TEST(Check, ComparesATableOfMeasuredPaths) {
     all.insert(all.end(), more.begin(), more.end());
     return run(all);
   };
-  const ProgramResult text = with({});
+  const ProgramResult text = joined({});
   ASSERT_EQ(text.status, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("losses.csv: 2 of 3 rows, 2 paths of 3.4"));
   EXPECT_THAT(text.out, HasSubstr("clutter: none"));
   EXPECT_THAT(text.out, testing::ContainsRegex("diffraction +2 +[-+][0-9.]+ +[0-9.]+ +[0-9.]+"));
-  const ProgramResult result = with({"--json", "--model", "free_space,itm"});
+  const ProgramResult result = joined({"--json", "--model", "free_space,itm"});
   const json report = json::parse(result.out);
   EXPECT_EQ(report["rows_selected"], 2);
   ASSERT_EQ(report["models"].size(), 2u);
@@ -130,17 +130,14 @@ TEST(Check, ComparesATableOfMeasuredPaths) {
   EXPECT_EQ(report["models"][1]["all"]["paths"], 2);
   EXPECT_EQ(report["paths"][0]["measured_db"], 130);
   EXPECT_EQ(report["paths"][1]["line"], 3);
-  EXPECT_EQ(with({"--where", "lat>80"}).status, 3);
-  const ProgramResult of_folder = run({"check", folder.path().string(), "--model", "itm"});
-  EXPECT_EQ(of_folder.status, 2);
-  EXPECT_THAT(of_folder.err, HasSubstr("options of measured paths are given"));
+  EXPECT_EQ(joined({"--where", "lat>80"}).status, 3);
+  EXPECT_THAT(errorOfRun({"check", folder.path().string(), "--model", "itm"}, 2),
+              HasSubstr("options of measured paths are given"));
 }
 
 TEST(Check, RefusesAFolderWithoutDatasets) {
   const TemporaryFolder folder;
-  const ProgramResult result = run({"check", folder.path().string()});
-  EXPECT_EQ(result.status, 3);
-  EXPECT_THAT(result.err, HasSubstr("has no known dataset"));
+  EXPECT_THAT(errorOfRun({"check", folder.path().string()}, 3), HasSubstr("has no known dataset"));
 }
 
 }  // namespace

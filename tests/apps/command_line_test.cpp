@@ -34,11 +34,10 @@ TEST(CommandLine, HelpAndVersionAreNoErrors) {
 
 TEST(CommandLine, NumbersAreFinite) {
   for (const std::string number : {"nan", "inf", "-inf"}) {
-    const ProgramResult result =
-        run({"vertical", shippedScenario("jacksboro.yaml"), "--emitter", "search radar", "--azimuth", "30",
-             "-o", "out.png", "--threshold", number});
-    EXPECT_EQ(result.status, kUsage);
-    EXPECT_THAT(result.err, HasSubstr("--threshold: '" + number + "' is not a number"));
+    EXPECT_THAT(errorOfRun({"vertical", shippedScenario("jacksboro.yaml"), "--emitter", "search radar",
+                            "--azimuth", "30", "-o", "out.png", "--threshold", number},
+                           kUsage),
+                HasSubstr("--threshold: '" + number + "' is not a number"));
   }
 }
 
@@ -52,9 +51,8 @@ TEST(CommandLine, LeadingZerosOfWholeNumbersAreIgnored) {
 
 TEST(CommandLine, WholeNumbersAreDecimal) {
   for (const std::string frames : {"0x10", "-0X1"}) {
-    const ProgramResult result = run({"bench", "render", shippedScenario("quick.yaml"), "--frames", frames});
-    EXPECT_EQ(result.status, kUsage);
-    EXPECT_THAT(result.err, HasSubstr("--frames: '" + frames + "' is not a decimal number\n"));
+    EXPECT_THAT(errorOfRun({"bench", "render", shippedScenario("quick.yaml"), "--frames", frames}, kUsage),
+                HasSubstr("--frames: '" + frames + "' is not a decimal number\n"));
   }
 }
 
@@ -68,11 +66,7 @@ TEST(CommandLine, UnexpectedWordsAreNamedInTheirOrder) {
 
 TEST(CommandLine, RefusedValuesAreReportedWithAllowedOnes) {
   const auto errorOf = [](const Arguments& more) {
-    Arguments arguments{"render", shippedScenario("quick.yaml"), "-o", "out.png"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, kUsage);
-    return result.err;
+    return errorOfRun(joined({"render", shippedScenario("quick.yaml"), "-o", "out.png"}, more), kUsage);
   };
   EXPECT_THAT(errorOf({"--step", "0"}),
               StartsWith("emscape: error: --step: '0' must be a number from 0.05 to 10\n"));
@@ -108,11 +102,7 @@ TEST(CommandLine, AVeryLongFileNameGivesAReadableError) {
 
 TEST(CommandLine, AnOptionWithoutItsValueIsNamed) {
   const auto errorOf = [](const Arguments& more) {
-    Arguments arguments{"simulate", shippedScenario("quick.yaml"), "-o", "out"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, kUsage);
-    return result.err;
+    return errorOfRun(joined({"simulate", shippedScenario("quick.yaml"), "-o", "out"}, more), kUsage);
   };
   EXPECT_THAT(errorOf({"--mesh", "--times", "0"}),
               HasSubstr("--mesh needs a value, but '--times' follows\n"));
@@ -296,10 +286,10 @@ TEST(CommandLine, MissingInputIsNamed) {
 
 TEST(CommandLine, UnreachedIsoValueIsReportedWithRange) {
   const TemporaryFolder folder;
-  const ProgramResult result = run({"render", shippedScenario("quick.yaml"), "-o", folder / "x.png", "--size",
-                                    "64x48", "--mode", "iso", "--iso-value", "999"});
-  EXPECT_EQ(result.status, kBadInput);
-  EXPECT_THAT(result.err, HasSubstr("iso value 999 dBW/m2: power_density_dbwm2 ranges from "));
+  EXPECT_THAT(errorOfRun({"render", shippedScenario("quick.yaml"), "-o", folder / "x.png", "--size", "64x48",
+                          "--mode", "iso", "--iso-value", "999"},
+                         kBadInput),
+              HasSubstr("iso value 999 dBW/m2: power_density_dbwm2 ranges from "));
   EXPECT_TRUE(folder.files().empty());
 }
 

@@ -17,13 +17,9 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 Arguments compare(const std::string& folder, const Arguments& more) {
-  Arguments arguments{"compare",   shippedScenario("jacksboro.yaml"),
-                      "-o",        folder,
-                      "--cell",    "500",
-                      "--times",   "80",
-                      "--heights", "agl:100"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"compare", shippedScenario("jacksboro.yaml"), "-o", folder, "--cell", "500", "--times", "80",
+                 "--heights", "agl:100"},
+                more);
 }
 
 TEST(Compare, WritesMapsAReportAndAVolume) {
@@ -65,9 +61,7 @@ TEST(Compare, SLOW_TwoRunsWriteTheSameBytes) {
 TEST(Compare, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const auto errorOf = [&](const Arguments& more, int status) {
-    const ProgramResult result = run(compare(folder / "out", more));
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
+    return errorOfRun(compare(folder / "out", more), status);
   };
   EXPECT_THAT(errorOf({}, 2), HasSubstr("give a second scenario, or --set-b"));
   EXPECT_THAT(errorOf({"--set-b", "power"}, 2), HasSubstr("--set-b"));
@@ -161,11 +155,8 @@ TEST(Compare, SLOW_RefusesIncompatibleFolders) {
   const auto with = [&](const std::string& name, const Arguments& more) { cover(folder / name, more); };
   with("a", {});
   const auto errorOf = [&](const std::string& b, const Arguments& more, int status) {
-    Arguments arguments{"compare", folder / "a", folder / b, "-o", folder / "out", "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
+    return errorOfRun(joined({"compare", folder / "a", folder / b, "-o", folder / "out", "--quiet"}, more),
+                      status);
   };
   with("cell", {"--cell", "2000"});
   EXPECT_THAT(errorOf("cell", {}, 3), testing::AllOf(HasSubstr("/cell: the grid of pixels differs from "),
@@ -186,9 +177,8 @@ TEST(Compare, SLOW_RefusesIncompatibleFolders) {
   folder.write("file", "");
   EXPECT_THAT(errorOf("file", {}, 2), HasSubstr("is a folder and"));
   const std::string report = readFile(folder / "a/report.json");
-  const ProgramResult onto_itself = run({"compare", folder / "a", folder / "a", "-o", folder / "a/."});
-  EXPECT_EQ(onto_itself.status, 2);
-  EXPECT_THAT(onto_itself.err, HasSubstr("is one of the folders to compare"));
+  EXPECT_THAT(errorOfRun({"compare", folder / "a", folder / "a", "-o", folder / "a/."}, 2),
+              HasSubstr("is one of the folders to compare"));
   EXPECT_EQ(readFile(folder / "a/report.json"), report);
   EXPECT_THAT(errorOf("a", {"--products", "best"}, 2), HasSubstr("'best'"));
   EXPECT_THAT(errorOf("a", {"--products", "count"}, 2),

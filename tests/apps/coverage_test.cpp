@@ -15,9 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 Arguments coverage(const TemporaryFolder& folder, const Arguments& more) {
-  Arguments arguments{"coverage", shippedScenario("jacksboro.yaml"), "-o", folder / "out", "--cell", "500"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"coverage", shippedScenario("jacksboro.yaml"), "-o", folder / "out", "--cell", "500"}, more);
 }
 
 TEST(Coverage, WritesMapsPicturesAndAReport) {
@@ -93,9 +91,7 @@ TEST(Coverage, SLOW_RemovesTheOutputsOfAnEarlierRun) {
 TEST(Coverage, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const auto errorOf = [&](const Arguments& more, int status) {
-    const ProgramResult result = run(coverage(folder, more));
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
+    return errorOfRun(coverage(folder, more), status);
   };
   EXPECT_THAT(errorOf({"--products", "holes"}, 2), HasSubstr("unknown product 'holes'"));
   EXPECT_THAT(errorOf({"--heights", "100"}, 2), HasSubstr("'100' must be one of agl:"));

@@ -179,9 +179,8 @@ TEST(Info, AHeaderOfValuesDescribesThem) {
 
 TEST(InfoOfRefractivity, RefusesAPlotOfOtherFiles) {
   const TemporaryFolder folder;
-  const ProgramResult result = run({"info", quick(), "--plot", folder / "x.png"});
-  EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.err, HasSubstr("--plot draws refractivity"));
+  EXPECT_THAT(errorOfRun({"info", quick(), "--plot", folder / "x.png"}, 2),
+              HasSubstr("--plot draws refractivity"));
   EXPECT_EQ(run({"info", quick(), "--plot", folder / "x.pdf"}).status, 2);
   EXPECT_EQ(run({"info", folder.write("air.csv", "height_msl_m,m_units\n0,330\n")}).status, 3);
 }
@@ -197,9 +196,8 @@ TEST(Info, RefusesAVolumeThatDoesNotFitBeforeItReadsItsValues) {
                    " Origin=\"0 0 0\" Spacing=\"1 1 1\"><Piece Extent=" + extent +
                    "><PointData><DataArray type=\"UInt8\" Name=\"a\" format=\"ascii\">1 2 3</DataArray>"
                    "</PointData></Piece></ImageData></VTKFile>\n");
-  const ProgramResult result = run({"info", file}, "ulimit -v 1000000;");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, testing::HasSubstr("a.vti: array a of 1073741824 values needs up to 5120 MiB"));
+  EXPECT_THAT(errorOfRun({"info", file}, 1, "ulimit -v 1000000;"),
+              testing::HasSubstr("a.vti: array a of 1073741824 values needs up to 5120 MiB"));
 }
 
 TEST(Info, EntriesBesideTheVolumesEndNoReading) {

@@ -15,9 +15,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 Arguments links(const Arguments& more) {
-  Arguments arguments{"link", shippedScenario("links.yaml"), "--times", "0:60:20"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"link", shippedScenario("links.yaml"), "--times", "0:60:20"}, more);
 }
 
 TEST(Link, JsonHasContractKeys) {
@@ -51,16 +49,16 @@ TEST(Link, ANameMayContainACommaAndIsTakenOnce) {
       "center_frequency_hz: 100.0e6, bandwidth_hz: 1.0e5}\n";
   const std::string file = folder.write("comma.yaml", text);
   const auto linksOf = [&](const Arguments& more) {
-    Arguments arguments{"link", file, "--times", "0", "--receiver", "set", "--json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return json::parse(runWell(arguments).out).at("links").size();
+    return json::parse(
+               runWell(joined({"link", file, "--times", "0", "--receiver", "set", "--json"}, more)).out)
+        .at("links")
+        .size();
   };
   EXPECT_EQ(linksOf({"--emitter", "a,b"}), 1u);
   EXPECT_EQ(linksOf({"--emitter", "radar", "--emitter", "a,b"}), linksOf({}));
   EXPECT_EQ(linksOf({"--emitter", "a,b", "--emitter", "a,b"}), 1u);
-  const ProgramResult unknown = run({"link", file, "--emitter", "radar,b"});
-  EXPECT_EQ(unknown.status, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("--emitter: no emitter 'b' in"));
+  EXPECT_THAT(errorOfRun({"link", file, "--emitter", "radar,b"}, 2),
+              HasSubstr("--emitter: no emitter 'b' in"));
 }
 
 TEST(Link, RowEqualsProfileOfThePath) {
@@ -106,9 +104,7 @@ TEST(Link, RefusesNamesAndScenariosWithoutLinksWithOneClearError) {
   EXPECT_EQ(nobody.status, 2);
   EXPECT_THAT(nobody.err, HasSubstr("--receiver: no receiver with a platform 'nobody' in "));
   EXPECT_THAT(nobody.err, HasSubstr("it has 'warning receiver', 'handset'"));
-  const ProgramResult none = run({"link", shippedScenario("quick.yaml")});
-  EXPECT_EQ(none.status, 3);
-  EXPECT_THAT(none.err, HasSubstr("there is no link: "));
+  EXPECT_THAT(errorOfRun({"link", shippedScenario("quick.yaml")}, 3), HasSubstr("there is no link: "));
   EXPECT_EQ(run(links({"--plot", "links.gif"})).status, 2);
 }
 

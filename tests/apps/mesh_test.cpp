@@ -15,11 +15,9 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 Arguments simulate(const std::string& folder, const Arguments& more = {}) {
-  Arguments arguments{"simulate", shippedScenario("jacksboro.yaml"), "-o",      folder,
-                      "--set",    "region.dims=[20, 18, 10]",        "--times", "0:20:10",
-                      "--quiet"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"simulate", shippedScenario("jacksboro.yaml"), "-o", folder, "--set",
+                 "region.dims=[20, 18, 10]", "--times", "0:20:10", "--quiet"},
+                more);
 }
 
 TEST(MeshSeries, SLOW_IsReproducible) {
@@ -48,9 +46,7 @@ TEST(MeshSeries, SLOW_IsReproducible) {
   }
 
   const auto render = [&](const Arguments& more) {
-    Arguments arguments{"render", folder / "a", "--size", "320x240", "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments);
+    return run(joined({"render", folder / "a", "--size", "320x240", "--quiet"}, more));
   };
   for (const char* name : {"one.png", "two.png"}) {
     const ProgramResult drawn =
@@ -63,9 +59,7 @@ TEST(MeshSeries, SLOW_IsReproducible) {
       << "named by the scenario, which the series knows";
 
   const auto refusal = [&](const Arguments& more) {
-    Arguments arguments{"-o", folder / "no.png"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = render(arguments);
+    const ProgramResult result = render(joined({"-o", folder / "no.png"}, more));
     EXPECT_EQ(result.status, 2);
     return result.err;
   };
@@ -149,9 +143,7 @@ TEST(MeshFile, DamageIsReportedInOneLine) {
   const std::string file = folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\"></VTKFile>");
   for (const Arguments& arguments :
        {Arguments{"info", file}, Arguments{"render", file, "-o", folder / "a.png"}}) {
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 3);
-    EXPECT_THAT(result.err, HasSubstr("a.vtu: an unstructured grid in one piece can be read"));
+    EXPECT_THAT(errorOfRun(arguments, 3), HasSubstr("a.vtu: an unstructured grid in one piece can be read"));
   }
 }
 

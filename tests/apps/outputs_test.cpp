@@ -38,9 +38,7 @@ class Outputs : public testing::Test {
     const std::vector<std::string> files = folder_.files();
     const std::string links = readFile(links_), quick = readFile(quick_),
                       drone = readFile(folder_ / "data/drone.csv");
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, kUsage) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("emscape: error: " + message));
+    EXPECT_THAT(errorOfRun(arguments, kUsage), HasSubstr("emscape: error: " + message));
     EXPECT_EQ(folder_.files(), files);
     EXPECT_EQ(readFile(links_), links);
     EXPECT_EQ(readFile(quick_), quick);
@@ -158,10 +156,9 @@ TEST_F(Outputs, OfASeriesDoNotReplaceAFileOfTheScenario) {
 
 TEST_F(Outputs, BeyondTheLimitOfAFilesSizeAreAnErrorWithoutRemains) {
   const std::vector<std::string> files = folder_.files();
-  const ProgramResult result =
-      run({"render", quick_, "--times", "0", "-o", folder_ / "x.png", "-q"}, "ulimit -f 20;");
-  EXPECT_EQ(result.status, kOther);
-  EXPECT_THAT(result.err, HasSubstr("x.png: cannot write: File too large"));
+  EXPECT_THAT(
+      errorOfRun({"render", quick_, "--times", "0", "-o", folder_ / "x.png", "-q"}, kOther, "ulimit -f 20;"),
+      HasSubstr("x.png: cannot write: File too large"));
   EXPECT_EQ(folder_.files(), files);
 }
 
@@ -207,9 +204,8 @@ TEST(Inputs, ThatArePipesAreRefused) {
     EXPECT_EQ(info.err, "emscape: error: " + pipe + ": cannot read: it is not a regular file\n");
   }
   for (const char* name : {"f.dat", "f.vti", "f.yaml"}) {
-    const ProgramResult render = run({"render", folder / name, "-o", folder / "x.png", "-q"});
-    EXPECT_EQ(render.status, kBadInput);
-    EXPECT_THAT(render.err, HasSubstr("cannot read: it is not a regular file\n"));
+    EXPECT_THAT(errorOfRun({"render", folder / name, "-o", folder / "x.png", "-q"}, kBadInput),
+                HasSubstr("cannot read: it is not a regular file\n"));
   }
 }
 
@@ -265,11 +261,10 @@ TEST(Results, OfPlotsBeyondTheMemoryAreRefusedBeforeTheWork) {
   GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
 #endif
   const TemporaryFolder folder;
-  const ProgramResult result = run({"profile", quick(), "--emitter", "radar", "--to", "52.05,5.05,100",
-                                    "--plot", folder / "a.png", "--size", "32767x32767"},
-                                   "ulimit -v 4000000;");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("a picture of 32767x32767 pixels needs up to"));
+  EXPECT_THAT(errorOfRun({"profile", quick(), "--emitter", "radar", "--to", "52.05,5.05,100", "--plot",
+                          folder / "a.png", "--size", "32767x32767"},
+                         1, "ulimit -v 4000000;"),
+              HasSubstr("a picture of 32767x32767 pixels needs up to"));
 }
 
 // Pango ends a program of which it cannot start a thread.

@@ -20,10 +20,9 @@ const std::string& jacksboro() {
 
 /// The point is behind the ridge as seen from the jammer at 40 s.
 Arguments blockedPath(const Arguments& more = {}) {
-  Arguments arguments{"profile", jacksboro(), "--emitter",          "jammer", "--time",
-                      "40",      "--to",      "36.27,-84.24167,15", "--agl"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return with(
+      {"profile", jacksboro(), "--emitter", "jammer", "--time", "40", "--to", "36.27,-84.24167,15", "--agl"},
+      more);
 }
 
 TEST(Profile, JsonHasContractKeys) {
@@ -116,9 +115,8 @@ TEST(Profile, RefusesInvalidPathsWithOneError) {
 }
 
 TEST(Profile, RefusesPlotsOfOtherKindsAndUnknownModels) {
-  const ProgramResult gif = run(blockedPath({"--plot", "path.gif"}));
-  EXPECT_EQ(gif.status, 2);
-  EXPECT_THAT(gif.err, HasSubstr("plots are written as .png or .svg"));
+  EXPECT_THAT(errorOfRun(blockedPath({"--plot", "path.gif"}), 2),
+              HasSubstr("plots are written as .png or .svg"));
   EXPECT_EQ(run(blockedPath({"--model", "magic"})).status, 2);
 }
 

@@ -59,6 +59,17 @@ ProgramResult runWell(const Arguments& arguments, const std::string& shell_prefi
   return result;
 }
 
+std::string errorOfRun(const Arguments& arguments, int status, const std::string& shell_prefix) {
+  const ProgramResult result = run(arguments, shell_prefix);
+  EXPECT_EQ(result.status, status) << testing::PrintToString(arguments) << "\n" << result.err;
+  return result.err;
+}
+
+Arguments joined(Arguments arguments, const Arguments& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
 const std::string& quick() {
   static const std::string file = shippedScenario("quick.yaml");
   return file;

@@ -21,9 +21,8 @@ using testing::IsSupersetOf;
 
 /// Plays the quick scenario in a small window, with every settled picture verified; returns the report.
 json play(const Arguments& more, const std::string& input = quick(), const std::string& size = "97x75") {
-  Arguments arguments{"render", input, "--realtime", "--size", size, "--verify", "--json"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  const ProgramResult result = runWell(arguments);
+  const ProgramResult result =
+      runWell(joined({"render", input, "--realtime", "--size", size, "--verify", "--json"}, more));
   return result.status == 0 ? json::parse(result.out) : json();
 }
 
@@ -126,9 +125,7 @@ TEST(Realtime, UsageErrorsAreReported) {
       {{"render", quick()}, "--output"},
   };
   for (const auto& [arguments, named] : wrong) {
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_THAT(result.err, HasSubstr(named));
+    EXPECT_THAT(errorOfRun(arguments, 2), HasSubstr(named));
   }
 }
 

@@ -56,19 +56,15 @@ TEST(Recordings, FaultsNameFileValueAndRemedy) {
   const TemporaryFolder folder;
   const std::string other = folder.write("a.txt", "hello\n");
   const std::string out = folder / "b.yaml";
-  const auto errorOf = [](const Arguments& arguments, int status) {
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
-  };
-  EXPECT_THAT(errorOf({"import", other, "-o", out}, 3), HasSubstr("a.txt: no recording of a known format"));
-  EXPECT_THAT(errorOf({"import", folder / "none", "-o", out}, 3),
+  EXPECT_THAT(errorOfRun({"import", other, "-o", out}, 3),
+              HasSubstr("a.txt: no recording of a known format"));
+  EXPECT_THAT(errorOfRun({"import", folder / "none", "-o", out}, 3),
               HasSubstr("none: cannot read: no such file"));
-  EXPECT_THAT(errorOf({"import", other, "-o", out, "--times", "5"}, 2),
+  EXPECT_THAT(errorOfRun({"import", other, "-o", out, "--times", "5"}, 2),
               HasSubstr("--times '5' is not BEGIN:END"));
-  EXPECT_THAT(errorOf({"import", other, "-o", out, "--region", "95,0,10"}, 2),
+  EXPECT_THAT(errorOfRun({"import", other, "-o", out, "--region", "95,0,10"}, 2),
               HasSubstr("--region '95,0,10' is not auto"));
-  EXPECT_THAT(errorOf({"export", shippedScenario("quick.yaml"), "-o", folder / "a.hla"}, 2),
+  EXPECT_THAT(errorOfRun({"export", shippedScenario("quick.yaml"), "-o", folder / "a.hla"}, 2),
               HasSubstr("it ends in .zip.acmi, .acmi, .pcap, .asi"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }
@@ -87,9 +83,8 @@ TEST(Recordings, FilesThatExistAreReplacedOnlyWithForce) {
     const std::vector<std::string> files = folder.files();
     std::filesystem::create_directories(std::filesystem::path(file).parent_path());
     writeFile(file, "mine\n");
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_THAT(result.err, HasSubstr(file + " exists; --force replaces it, another --output keeps it"));
+    EXPECT_THAT(errorOfRun(arguments, 2),
+                HasSubstr(file + " exists; --force replaces it, another --output keeps it"));
     EXPECT_EQ(readFile(file), "mine\n");
     arguments.emplace_back("--force");
     EXPECT_EQ(run(arguments).status, 0);
@@ -122,10 +117,10 @@ TEST(Recordings, CoverageIsAddedToCzml) {
   EXPECT_EQ(beams, 2);
   EXPECT_GE(outlines, 11) << "one for each time at least";
   EXPECT_EQ(folder.files().size(), 2u) << "the document and its emitter database";
-  const ProgramResult other =
-      run({"export", shippedScenario("jamming.yaml"), "-o", folder / "a.kml", "--coverage", "agl:150"});
-  EXPECT_EQ(other.status, 2);
-  EXPECT_THAT(other.err, HasSubstr("--coverage is written into .czml alone"));
+  EXPECT_THAT(
+      errorOfRun({"export", shippedScenario("jamming.yaml"), "-o", folder / "a.kml", "--coverage", "agl:150"},
+                 2),
+      HasSubstr("--coverage is written into .czml alone"));
   EXPECT_EQ(
       run({"export", shippedScenario("jamming.yaml"), "-o", folder / "b.czml", "--coverage", "x"}).status, 2);
   EXPECT_EQ(folder.files().size(), 2u) << "nothing is written";

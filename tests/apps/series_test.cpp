@@ -61,9 +61,7 @@ TEST(Simulate, RefusesAFolderThatHoldsASeries) {
   const TemporaryFolder folder;
   const Arguments arguments{"simulate", quick(), "-o", folder / "s", "--times", "0:1:1"};
   ASSERT_EQ(run(arguments).status, 0);
-  const ProgramResult again = run(arguments);
-  EXPECT_EQ(again.status, 2);
-  EXPECT_THAT(again.err, HasSubstr("--resume"));
+  EXPECT_THAT(errorOfRun(arguments, 2), HasSubstr("--resume"));
   Arguments force = arguments;
   force.emplace_back("--force");
   EXPECT_EQ(run(force).status, 0);
@@ -81,9 +79,8 @@ TEST(Simulate, ForceRemovesPreviousSeries) {
 TEST(Simulate, ResumeRefusesOtherOptionsByName) {
   const TemporaryFolder folder;
   ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0:1:1"}).status, 0);
-  const ProgramResult result = run({"simulate", quick(), "-o", folder / "s", "--times", "0:2:1", "--resume"});
-  EXPECT_EQ(result.status, 3);
-  EXPECT_THAT(result.err, HasSubstr("another times"));
+  EXPECT_THAT(errorOfRun({"simulate", quick(), "-o", folder / "s", "--times", "0:2:1", "--resume"}, 3),
+              HasSubstr("another times"));
 }
 
 TEST(Simulate, SLOW_ASeriesThatWasKilledResumesToTheSameFiles) {
@@ -127,10 +124,9 @@ TEST(Simulate, CtrlCLeavesWholeFilesAndStatus130) {
 TEST(Simulate, FullDiskIsOneErrorAndKeepsFinishedFiles) {
   const TemporaryFolder folder;
   // Files may grow to 64 KiB: series.json fits, a volume does not.
-  const ProgramResult result =
-      run({"simulate", quick(), "-o", folder / "s", "--format", "raw"}, "trap '' XFSZ; ulimit -f 128;");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("emscape: error: "));
+  EXPECT_THAT(errorOfRun({"simulate", quick(), "-o", folder / "s", "--format", "raw"}, 1,
+                         "trap '' XFSZ; ulimit -f 128;"),
+              HasSubstr("emscape: error: "));
   EXPECT_THAT(folder.files(), ElementsAre("s/series.json"));
 }
 
@@ -262,9 +258,7 @@ TEST(Simulate, ASecondProcessIsRefusedWhileOneWritesTheFolder) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   Arguments second = arguments;
   second.emplace_back("--force");
-  const ProgramResult refused = run(second);
-  EXPECT_EQ(refused.status, 1);
-  EXPECT_THAT(refused.err, HasSubstr("another process writes this folder: process "));
+  EXPECT_THAT(errorOfRun(second, 1), HasSubstr("another process writes this folder: process "));
   first.signal(SIGINT);
   EXPECT_EQ(first.wait().status, 130);
   EXPECT_THAT(folder.files(), Not(Contains(HasSubstr("lock"))));
@@ -319,11 +313,9 @@ TEST(Render, AVideoThatDoesNotFitOnTheDiskIsAnErrorAndNoFile) {
   if (std::system("command -v ffmpeg >/dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
   const TemporaryFolder folder;
   // Files may grow to 4 KiB.
-  const ProgramResult result =
-      run({"render", quick(), "-o", folder / "v.mp4", "--size", "320x240", "--times", "0:4:1"},
-          "trap '' XFSZ; ulimit -f 8;");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("v.mp4: ffmpeg"));
+  EXPECT_THAT(errorOfRun({"render", quick(), "-o", folder / "v.mp4", "--size", "320x240", "--times", "0:4:1"},
+                         1, "trap '' XFSZ; ulimit -f 8;"),
+              HasSubstr("v.mp4: ffmpeg"));
   EXPECT_TRUE(folder.files().empty());
 }
 
@@ -355,10 +347,8 @@ TEST(Render, RemovesTemporariesOfKilledProcess) {
 
 TEST(Render, WithoutFfmpegAVideoIsAClearErrorAndNoFile) {
   const TemporaryFolder folder;
-  const ProgramResult result =
-      run({"render", quick(), "-o", folder / "v.mp4", "--size", "64x48"}, "PATH=/nowhere;");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("needs the program ffmpeg"));
+  EXPECT_THAT(errorOfRun({"render", quick(), "-o", folder / "v.mp4", "--size", "64x48"}, 1, "PATH=/nowhere;"),
+              HasSubstr("needs the program ffmpeg"));
   EXPECT_TRUE(folder.files().empty());
 }
 

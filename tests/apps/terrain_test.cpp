@@ -146,10 +146,10 @@ TEST_F(TerrainProgram, MissingTerrainIsTreatedAlikeBySubcommands) {
 
 TEST_F(TerrainProgram, AMapOfNothingKnownIsAnErrorThatOffersTheOtherSign) {
   const std::string file = scenario("", 84.2);
-  const ProgramResult maps = run({"coverage", file, "-o", folder_ / "maps", "--heights", "msl:1500",
-                                  "--quantity", "power_density_dbwm2", "--threshold", "-60"});
-  EXPECT_EQ(maps.status, 3);
-  EXPECT_THAT(maps.err, HasSubstr("perhaps longitude has the other sign"));
+  EXPECT_THAT(errorOfRun({"coverage", file, "-o", folder_ / "maps", "--heights", "msl:1500", "--quantity",
+                          "power_density_dbwm2", "--threshold", "-60"},
+                         3),
+              HasSubstr("perhaps longitude has the other sign"));
   EXPECT_THAT(run({"validate", file}).out, HasSubstr("perhaps longitude has the other sign"));
   EXPECT_THAT(run({"simulate", file, "-o", folder_ / "out"}).err,
               HasSubstr("perhaps longitude has the other sign"));

@@ -17,16 +17,12 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 Arguments vertical(const Arguments& more) {
-  Arguments arguments{"vertical", shippedScenario("jacksboro.yaml"), "--azimuth", "30,150", "--grid",
-                      "60,40"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"vertical", shippedScenario("jacksboro.yaml"), "--azimuth", "30,150", "--grid", "60,40"},
+                more);
 }
 
 Arguments exposure(const Arguments& more) {
-  Arguments arguments{"exposure", shippedScenario("links.yaml"), "--times", "0:60:10"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"exposure", shippedScenario("links.yaml"), "--times", "0:60:10"}, more);
 }
 
 /// Runs twice, into two folders; the four files must be the same.
@@ -77,11 +73,7 @@ TEST(Vertical, ABlakeChartHasTheContourOfFreeSpace) {
 
 TEST(Vertical, RefusesInvalidOptions) {
   const TemporaryFolder folder;
-  const auto errorOf = [&](const Arguments& more, int status) {
-    const ProgramResult result = run(vertical(more));
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
-  };
+  const auto errorOf = [&](const Arguments& more, int status) { return errorOfRun(vertical(more), status); };
   const std::string file = folder / "a.png";
   EXPECT_THAT(errorOf({"--emitter", "radar", "-o", file}, 2), HasSubstr("no emitter 'radar'"));
   EXPECT_THAT(errorOf({"--emitter", "jammer", "-o", file}, 2), HasSubstr("--threshold"));
@@ -119,9 +111,7 @@ TEST(Exposure, RefusesInvalidOptions) {
   const auto errorOf = [&](const Arguments& more, int status) {
     Arguments arguments = more;
     arguments.insert(arguments.end(), {"-o", folder / "a.json"});
-    const ProgramResult result = run(exposure(arguments));
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
+    return errorOfRun(exposure(arguments), status);
   };
   EXPECT_THAT(errorOf({"--platform", "ship"}, 2), HasSubstr("no platform 'ship'"));
   EXPECT_THAT(errorOf({"--platform", "drone", "--rcs-target", "ship"}, 2), HasSubstr("no target 'ship'"));

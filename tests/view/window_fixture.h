@@ -86,9 +86,7 @@ class Window : public testing::Test {
 
   /// Runs a script to its end.
   ProgramResult runScript(const std::string& script, const Arguments& more = {}) {
-    Arguments arguments = viewOf(quick(), script);
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments, environment());
+    return run(joined(viewOf(quick(), script), more), environment());
   }
 
   /// Runs a script and quits; the test fails if a step of it does.

@@ -276,10 +276,8 @@ TEST_F(Window, NamesAreShownToTheirEnd) {
 }
 
 TEST_F(Window, AnInputThatCannotBeOpenedEndsWithItsOwnStatus) {
-  const ProgramResult result =
-      run({"view", quick(), "--quantity", "power_density_dbwm2:none"}, environment());
-  EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.err, HasSubstr("there is no such channel"));
+  EXPECT_THAT(errorOfRun({"view", quick(), "--quantity", "power_density_dbwm2:none"}, environment(), 2),
+              HasSubstr("there is no such channel"));
 }
 
 TEST_F(Window, DrawsAViewAsRenderDoes) {
@@ -437,9 +435,8 @@ TEST_F(Window, WithoutAnInputItAsksForOne) {
 }
 
 TEST_F(Window, OptionsOfAnInputNeedOne) {
-  const ProgramResult result = run({"view", "--set", "emitters.radar.power_w=5"}, environment());
-  EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.err, HasSubstr("--set needs INPUT"));
+  EXPECT_THAT(errorOfRun({"view", "--set", "emitters.radar.power_w=5"}, environment(), 2),
+              HasSubstr("--set needs INPUT"));
 }
 
 TEST_F(Window, RealEventsOfTheServerArrive) {
