@@ -112,17 +112,13 @@ TEST(Check, ComparesATableOfMeasuredPaths) {
       "db=pl",
       "--where",
       "site=a"};
-  const auto with = [&](std::vector<std::string> more) {
-    std::vector<std::string> all = arguments;
-    all.insert(all.end(), more.begin(), more.end());
-    return run(all);
-  };
-  const ProgramResult text = joined({});
+  const auto with = [&](const Arguments& more) { return run(joined(arguments, more)); };
+  const ProgramResult text = with({});
   ASSERT_EQ(text.status, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("losses.csv: 2 of 3 rows, 2 paths of 3.4"));
   EXPECT_THAT(text.out, HasSubstr("clutter: none"));
   EXPECT_THAT(text.out, testing::ContainsRegex("diffraction +2 +[-+][0-9.]+ +[0-9.]+ +[0-9.]+"));
-  const ProgramResult result = joined({"--json", "--model", "free_space,itm"});
+  const ProgramResult result = with({"--json", "--model", "free_space,itm"});
   const json report = json::parse(result.out);
   EXPECT_EQ(report["rows_selected"], 2);
   ASSERT_EQ(report["models"].size(), 2u);
@@ -130,7 +126,7 @@ TEST(Check, ComparesATableOfMeasuredPaths) {
   EXPECT_EQ(report["models"][1]["all"]["paths"], 2);
   EXPECT_EQ(report["paths"][0]["measured_db"], 130);
   EXPECT_EQ(report["paths"][1]["line"], 3);
-  EXPECT_EQ(joined({"--where", "lat>80"}).status, 3);
+  EXPECT_EQ(with({"--where", "lat>80"}).status, 3);
   EXPECT_THAT(errorOfRun({"check", folder.path().string(), "--model", "itm"}, 2),
               HasSubstr("options of measured paths are given"));
 }

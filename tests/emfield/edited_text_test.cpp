@@ -48,8 +48,7 @@ TEST_P(EditedText, SLOW_EqualsNewSolverBitForBit) {
     return small;
   }());
   scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-  FieldSolver solver(scenario, terrain, {});
-  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
+  FieldSolver solver = solvedAt(scenario, terrain);
   scenario::RandomEdits random(21);
   int compared = 0;
   for (int tries = 0; tries < 400 && compared < 25; ++tries) {
