@@ -238,7 +238,7 @@ propagation::ModelSettings parsePropagation(const Section& section, ParseContext
 int parseVictim(const Section& section, const Emitter& emitter, const std::vector<Platform>& platforms,
                 ParseContext& context) {
   const Section scan = section.section("scan");
-  const int victim = indexOfNamed(scan, "victim", "platform", platforms, context);
+  const int victim = indexNamedBy(scan, "victim", "platform", platforms, context);
   if (victim >= 0 && victim == emitter.platform) {
     context.problems.addError(
         scan.locationOf("victim"),
@@ -368,7 +368,7 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   Emitter emitter;
   emitter.name = section.text("name");
   emitter.location = section.location();
-  emitter.platform = indexOfNamed(section, "platform", "platform", platforms, context);
+  emitter.platform = indexNamedBy(section, "platform", "platform", platforms, context);
   emitter.kind = section.choice<EmitterKind>("kind");
   emitter.enabled = section.optionalBoolean("enabled").value_or(true);
   emitter.frequency_hz = section.number("frequency_hz");

@@ -62,7 +62,7 @@ ScanSpec parseScan(const Section& section, bool steers_electronically, ParseCont
 /// Index of the item that a key names; -1, and a problem, if there is none.
 /// @param kind  of the items, for the problem
 template <class Named>
-int indexOfNamed(const Section& section, const char* key, const char* kind, const std::vector<Named>& items,
+int indexNamedBy(const Section& section, const char* key, const char* kind, const std::vector<Named>& items,
                  ParseContext& context) {
   const std::string wanted = section.text(key);
   std::vector<std::string> names;

@@ -80,10 +80,10 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
   if (section.has("interval")) output.interval = parseInterval(section.section("interval"), context);
   if (section.has("receiver")) {
     output.receiver =
-        indexOfNamed(section, "receiver", "receiver without a platform", scenario.receivers, context);
+        indexNamedBy(section, "receiver", "receiver without a platform", scenario.receivers, context);
   }
   if (section.has("wanted_emitter"))
-    output.wanted_emitter = indexOfNamed(section, "wanted_emitter", "emitter", scenario.emitters, context);
+    output.wanted_emitter = indexNamedBy(section, "wanted_emitter", "emitter", scenario.emitters, context);
   const bool has_unknown_name =
       output.receiver < 0 || (section.has("wanted_emitter") && output.wanted_emitter < 0);
   output.detection_threshold = section.number("detection_threshold");
