@@ -20,7 +20,7 @@ const std::string& jacksboro() {
 
 /// The point is behind the ridge as seen from the jammer at 40 s.
 Arguments blockedPath(const Arguments& more = {}) {
-  return with(
+  return joined(
       {"profile", jacksboro(), "--emitter", "jammer", "--time", "40", "--to", "36.27,-84.24167,15", "--agl"},
       more);
 }
