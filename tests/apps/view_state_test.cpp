@@ -68,9 +68,9 @@ TEST(ViewState, OptionsThatAreGivenCountMore) {
   ASSERT_EQ(render(joined(kLook, {"--save-state", folder / "a.view.json"})).status, 0);
   const Arguments other{"--size",  "120x90", "--theme", "dark",
                         "--times", "1",      "--set",   "emitters.radar.power_w=5"};
-  ASSERT_EQ(
-      render(with(other, {"--state", folder / "a.view.json", "--save-state", folder / "b.view.json"})).status,
-      0);
+  ASSERT_EQ(render(joined(other, {"--state", folder / "a.view.json", "--save-state", folder / "b.view.json"}))
+                .status,
+            0);
   const json state = json::parse(readFile(folder / "b.view.json"));
   EXPECT_EQ(state["size"], json({120, 90}));
   EXPECT_EQ(state["theme"], "dark");

@@ -373,7 +373,7 @@ TEST_P(Clutter, AfterEditEqualsNewSolver) {
   scenario->output.quantities = {"sclnr_db"};
   FieldOptions options;
   options.backend = GetParam();
-  FieldSolver solver = solvedAt(scenario, nullptr, options);
+  SolvedField solver(scenario, nullptr, options);
   const auto before = solver.volumes().front().host();
   const auto edited = std::make_shared<scenario::Scenario>(*scenario);
   edited->emitters[0].clutter->sea_state = 6;

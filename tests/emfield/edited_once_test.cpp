@@ -104,7 +104,7 @@ TEST_F(EditedOnce, AddedAndRemovedEmittersKeepTheGeometryOfTheOthers) {
     s.emitters[2].frequency_hz *= 2;
   });
   EXPECT_THAT(changed.moved, ElementsAre(2));
-  FieldSolver fresh = solvedAt(scenario_);
+  SolvedField fresh(scenario_);
   expectEqualSolvers(*solver_, fresh);
 }
 
@@ -115,7 +115,7 @@ TEST_F(EditedOnce, ARefusedEmitterLeavesTheGeometryOfTheOthers) {
   refused->emitters[3].propagation.p528.time_percent = 200;
   EXPECT_THROW(solver_->update(scenario::snapshotAt(refused, nullptr, 0)), Error);
   EXPECT_THAT(after([](Scenario& s) { s.emitters[3].power_w *= 2; }).moved, IsEmpty());
-  FieldSolver fresh = solvedAt(scenario_);
+  SolvedField fresh(scenario_);
   expectEqualSolvers(*solver_, fresh);
 }
 
@@ -180,7 +180,7 @@ TEST_F(EditedOnce, RefusedEditKeepsTheField) {
   EXPECT_THROW(solver_->update(scenario::snapshotAt(refused, nullptr, 0)), Error);
   EXPECT_EQ(solver_->volumes().front().dense(), before);
   after([](Scenario& s) { s.emitters[3].power_w *= 2; });
-  FieldSolver fresh = solvedAt(scenario_);
+  SolvedField fresh(scenario_);
   expectEqualSolvers(*solver_, fresh);
 }
 

@@ -305,7 +305,7 @@ TEST_P(EditedEchoes, ThenPowerEqualANewSolver) {
   auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
   scenario->output.quantities = {"power_density_dbwm2", "detection_probability"};
   scenario->output.radar_look = scenario::RadarAim::target;
-  FieldSolver solver = solvedAt(scenario, nullptr, options);
+  SolvedField solver(scenario, nullptr, options);
   const auto edit = [&](const std::function<void(Scenario&)>& change) {
     scenario = std::make_shared<Scenario>(*scenario);
     change(*scenario);
@@ -317,7 +317,7 @@ TEST_P(EditedEchoes, ThenPowerEqualANewSolver) {
     });
   }
   for (int n = 0; n < 3; ++n) edit([](Scenario& s) { s.emitters.back().power_w *= 2; });
-  FieldSolver fresh = solvedAt(scenario, nullptr, options);
+  SolvedField fresh(scenario, nullptr, options);
   expectEqualSolvers(solver, fresh);
 }
 
@@ -340,7 +340,7 @@ TEST(EditedScenario, AnUpdateThatFailsOverAHoleCanBeFollowedByOthers) {
   const auto terrain = std::make_shared<MadeTerrain>(kLatitude_deg, kLongitude_deg, 0.5, 0.02);
   auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::free_space});
   scenario->region.size_m = {9e3, 9e3, 4000};
-  FieldSolver solver = solvedAt(scenario, terrain);
+  SolvedField solver(scenario, terrain);
   auto edited = std::make_shared<Scenario>(*scenario);
   edited->emitters[3].propagation.model = PropagationModel::diffraction;
   edited->platforms[3].track.front().position.latitude_deg = kLatitude_deg + 0.24;
@@ -351,7 +351,7 @@ TEST(EditedScenario, AnUpdateThatFailsOverAHoleCanBeFollowedByOthers) {
   const auto moved = std::make_shared<Scenario>(*scenario);
   moved->emitters[0].power_w = 5;
   solver.update(scenario::snapshotAt(moved, terrain.get(), 2));
-  FieldSolver fresh = solvedAt(moved, terrain, {}, 2);
+  SolvedField fresh(moved, terrain, {}, 2);
   expectEqualSolvers(solver, fresh);
 }
 

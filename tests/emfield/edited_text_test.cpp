@@ -48,7 +48,7 @@ TEST_P(EditedText, SLOW_EqualsNewSolverBitForBit) {
     return small;
   }());
   scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-  FieldSolver solver = solvedAt(scenario, terrain);
+  SolvedField solver(scenario, terrain);
   scenario::RandomEdits random(21);
   int compared = 0;
   for (int tries = 0; tries < 400 && compared < 25; ++tries) {
