@@ -276,7 +276,7 @@ TEST_F(Window, NamesAreShownToTheirEnd) {
 }
 
 TEST_F(Window, AnInputThatCannotBeOpenedEndsWithItsOwnStatus) {
-  EXPECT_THAT(errorOfRun({"view", quick(), "--quantity", "power_density_dbwm2:none"}, environment(), 2),
+  EXPECT_THAT(errorOfRun({"view", quick(), "--quantity", "power_density_dbwm2:none"}, 2, environment()),
               HasSubstr("there is no such channel"));
 }
 
@@ -435,7 +435,7 @@ TEST_F(Window, WithoutAnInputItAsksForOne) {
 }
 
 TEST_F(Window, OptionsOfAnInputNeedOne) {
-  EXPECT_THAT(errorOfRun({"view", "--set", "emitters.radar.power_w=5"}, environment(), 2),
+  EXPECT_THAT(errorOfRun({"view", "--set", "emitters.radar.power_w=5"}, 2, environment()),
               HasSubstr("--set needs INPUT"));
 }
 
