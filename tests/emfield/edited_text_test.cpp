@@ -48,7 +48,8 @@ TEST_P(EditedText, SLOW_EqualsNewSolverBitForBit) {
     return small;
   }());
   scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-  SolvedField solver(scenario, terrain);
+  FieldSolver solver(scenario, terrain, {});
+  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
   scenario::RandomEdits random(21);
   int compared = 0;
   for (int tries = 0; tries < 400 && compared < 25; ++tries) {
