@@ -38,6 +38,17 @@ function(emscape_unity target)
   endif()
 endfunction()
 
+# emscape_source_options(OPTIONS SOURCE ...): compile options of single sources. One that does not exist, as after a renaming, would
+# lose them without a word.
+function(emscape_source_options options)
+  foreach(source ${ARGN})
+    if(NOT EXISTS "${CMAKE_CURRENT_SOURCE_DIR}/${source}")
+      message(FATAL_ERROR "compile options of a source that does not exist: ${source}")
+    endif()
+    set_property(SOURCE ${source} APPEND PROPERTY COMPILE_OPTIONS ${options})
+  endforeach()
+endfunction()
+
 # Enables warnings, as errors if requested, for a target of the project.
 function(emscape_warnings target)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/geodesy/position_limits.h"
+#include "base/memory.h"
 #include "base/text/quantity_text.h"
 
 namespace emscape::volume {
@@ -87,6 +88,26 @@ void checkAxes(const std::array<double, 9>& matrix, const Vec3d& spacing_m, cons
           who + "the grid is rotated, sheared or mirrored; grids whose axes are x, y and z can be read");
     }
   }
+}
+
+void checkSparseness(const Dims& dims, std::uint64_t stored, const SourceLocation& location) {
+  constexpr long long kAlwaysDense = 1LL << 27;
+  constexpr std::uint64_t kSparsest = 1000;
+  checkDims(dims, location);
+  if (dims.count() > kAlwaysDense && static_cast<std::uint64_t>(dims.count()) / kSparsest > stored) {
+    throw Error(ErrorCode::bad_input, location,
+                "the box of the active voxels holds " + std::to_string(dims.count()) +
+                    " voxels, but the file stores only " + std::to_string(stored) +
+                    " values for them: too sparse to be made dense");
+  }
+}
+
+void requireDenseMemory(const Dims& dims, const SourceLocation& location) {
+  checkDims(dims, location);
+  requireMemory({"a dense volume of " + std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " +
+                     std::to_string(dims.z) + " voxels",
+                 sizeof(float) * static_cast<std::size_t>(dims.count()), "a coarser grid takes less"},
+                location);
 }
 
 }  // namespace emscape::volume

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 
 #include "emscape/volume/dense_volume.h"
@@ -45,5 +46,16 @@ float requireFloat(double value, const std::string& name = "");
 /// @throws Error (bad_input) at `location`: the grid is rotated, sheared or mirrored
 void checkAxes(const std::array<double, 9>& matrix, const Vec3d& spacing_m, const std::string& who,
                const SourceLocation& location);
+
+/// A file of another program may be so sparse that the box of its active voxels is very large, or have large
+/// tiles of one value. Beyond 2^27 voxels at least one in a thousand must be stored; else the file is
+/// probably damaged.
+/// @param stored  number of active voxels and tiles with a value in the file
+/// @throws Error (bad_input) at `location`
+void checkSparseness(const Dims& dims, std::uint64_t stored, const SourceLocation& location);
+
+/// Checks that there is memory for the values of a dense volume, however small the file is.
+/// @throws Error (other) at `location`
+void requireDenseMemory(const Dims& dims, const SourceLocation& location);
 
 }  // namespace emscape::volume

@@ -1,6 +1,5 @@
 #include "volume/vdb_layout.h"
 
-#include <algorithm>
 #include <bitset>
 
 namespace emscape::volume {

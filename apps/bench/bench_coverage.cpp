@@ -12,7 +12,6 @@
 #include "apps/common/interrupt.h"
 #include "apps/common/target.h"
 #include "base/stopwatch.h"
-#include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/scenario/file/scenario_file.h"

@@ -1,7 +1,6 @@
 /// emscape bench field: the stages of the field computation.
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>

@@ -14,7 +14,6 @@
 #include "apps/common/interrupt.h"
 #include "apps/common/target.h"
 #include "base/stopwatch.h"
-#include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "propagation/parabolic_equation/march/march_timing.h"
 

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include "base/math/simd_targets.h"
 //
 #include <hwy/highway.h>
 

@@ -1,7 +1,6 @@
 /// Options of commands that receive a live battlefield.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "apps/common/command.h"

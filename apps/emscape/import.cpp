@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "apps/common/console.h"
-#include "apps/common/interrupt.h"
 #include "apps/emscape/subcommands.h"
 #include "base/files/whole_file.h"
 #include "document/schema_check.h"

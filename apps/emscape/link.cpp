@@ -1,7 +1,6 @@
 /// emscape link: signals of emitters at receivers, and detection of targets by radars, over time.
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "apps/common/console.h"

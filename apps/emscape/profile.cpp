@@ -1,7 +1,6 @@
 /// emscape profile: explains the coverage at a point.
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>

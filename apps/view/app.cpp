@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "apps/common/interrupt.h"
-#include "apps/view/widgets/theme.h"
 #include "base/stopwatch.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "base/files/unfinished_file.h"
-#include "emscape/base/error.h"
 
 namespace emscape {
 

@@ -9,7 +9,7 @@
 #include "emfield/radar/receiver.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "emscape/scenario/model/exposure_limits.h"
+#include "emscape/scenario/model/quantities.h"
 #include "emscape/volume/dense_volume.h"
 #include "propagation/mechanism.h"
 #include "scenario/file/quantity_needs.h"

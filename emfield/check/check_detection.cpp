@@ -1,5 +1,4 @@
 /// Detection statistics, the radar equation and free-space conversions.
-#include <cmath>
 
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"

@@ -1,7 +1,6 @@
 /// The parabolic equation against closed forms: two rays, cell means, a beam, an edge, a sloped plane;
 /// roughness.
 #include <map>
-#include <set>
 
 #include "emfield/check/datasets.h"
 #include "emfield/check/pe_figures.h"

@@ -17,7 +17,7 @@
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 #include "emscape/base/work.h"
-#include "emscape/emfield/link/path_excess.h"
+#include "emscape/emfield/link/path_budget.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {

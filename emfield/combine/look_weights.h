@@ -1,7 +1,6 @@
 /// Weights of the voxels for a radar's look, independent of all powers.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 namespace emscape::emfield {

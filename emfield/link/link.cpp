@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <thread>
 #include <unordered_set>
 
 #include "emfield/link/links_of_time.h"
-#include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 
 namespace emscape::emfield {

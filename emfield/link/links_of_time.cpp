@@ -18,7 +18,6 @@
 namespace emscape::emfield {
 namespace {
 
-using propagation::PropagationModel;
 using scenario::Emitter;
 using scenario::EmitterState;
 using scenario::PlacedReceiver;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/text/quantity_text.h"
 #include "emfield/channels/products.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "emscape/emfield/link/path_budget.h"
+#include "emfield/link/path_verdict.h"
 
 namespace emscape::emfield {
 namespace {
@@ -84,7 +84,6 @@ PathCause causeOf(const PathBudget& budget, Quantity quantity, double threshold)
 }
 
 std::string decisionText(const PathBudget& budget) {
-  constexpr double kDetected = 0.5;
   const bool is_radar = budget.find("detection_probability") != nullptr;
   if (!is_radar && budget.find("intercept_margin_db") == nullptr) return "";
   const Decision decision = is_radar ? decide(budget, Quantity::detection_probability, kDetected)

@@ -1,7 +1,6 @@
 #include "emfield/link/path_clutter.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "emfield/columns/station.h"
 

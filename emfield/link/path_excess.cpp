@@ -1,5 +1,3 @@
-#include "emscape/emfield/link/path_excess.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "emfield/excess/emitter_excess.h"
 #include "emfield/excess/model_check.h"
 #include "emfield/ground/ground_posts.h"
+#include "emscape/emfield/link/path_budget.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {

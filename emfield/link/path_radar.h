@@ -5,7 +5,6 @@
 
 #include "emscape/base/vec.h"
 #include "emscape/emfield/link/path_budget.h"
-#include "emscape/scenario/model/quantities.h"
 #include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::emfield {

@@ -106,7 +106,6 @@ std::string jammersText(const PathJamming& jamming) {
 
 /// The cause that comes before the path: jamming that takes the detection away.
 std::string jammedText(const PathBudget& budget) {
-  constexpr double kDetected = 0.5;
   const BudgetTerm* probability = budget.find("detection_probability");
   if (probability == nullptr || budget.jamming.strongest.empty()) return "";
   if (probability->value >= kDetected || budget.jamming.unjammed_probability < kDetected) return "";

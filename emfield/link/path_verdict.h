@@ -9,6 +9,8 @@ namespace emscape::emfield {
 
 /// Gain of an antenna, relative to its maximum, below which its beam misses a point.
 constexpr double kBeamMisses_db = -6;
+/// Probability from which on a verdict calls a target detected.
+constexpr double kDetected = 0.5;
 
 /// Names the dominant cause: inactive emitter, jamming that takes the detection away, obstacle, antenna
 /// pattern, or distance.

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "emfield/radar/receiver.h"
 #include "emfield/solver/field_solver_impl.h"
-#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "emscape/base/units.h"
 #include "scenario/scan/swept_antenna.h"

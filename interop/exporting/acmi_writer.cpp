@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"

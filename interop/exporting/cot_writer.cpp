@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "base/text/xml_text.h"
 #include "emscape/base/geodesy/geoid.h"
@@ -11,7 +10,6 @@
 #include "interop/importing/nodes.h"
 #include "recording/beams/directions.h"
 #include "recording/common/dates.h"
-#include "recording/common/text.h"
 
 namespace emscape::interop {
 namespace {

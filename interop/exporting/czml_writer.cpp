@@ -10,7 +10,6 @@
 #include "interop/exporting/writers.h"
 #include "recording/beams/directions.h"
 #include "recording/common/dates.h"
-#include "recording/common/text.h"
 
 namespace emscape::interop {
 namespace {

@@ -16,7 +16,6 @@
 namespace emscape::interop {
 namespace {
 
-using dis::BodyAxes;
 using dis::EntityState;
 using dis::Header;
 

@@ -7,7 +7,6 @@
 
 #include "base/files/unfinished_file.h"
 #include "base/files/whole_file.h"
-#include "base/geodesy/gdal.h"
 #include "emscape/base/error.h"
 #include "interop/exporting/writers.h"
 #include "recording/dis/pdu.h"

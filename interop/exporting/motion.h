@@ -1,7 +1,6 @@
 /// Platforms and beams of a scenario over time, for the writers of recordings.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "emscape/base/vec.h"

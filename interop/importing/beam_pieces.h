@@ -1,8 +1,6 @@
 /// A beam over time as emitters of a scenario, whose frequency, power and scan do not change.
 #pragma once
 
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "recording/common/recording.h"

@@ -1,7 +1,6 @@
 #include "interop/importing/held_beams.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "recording/beams/directions.h"
 

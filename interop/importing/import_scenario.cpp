@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <memory>
 #include <set>
-#include <unordered_map>
 
 #include "base/files/folder.h"
 #include "base/files/whole_file.h"

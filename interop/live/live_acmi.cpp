@@ -1,6 +1,5 @@
 #include "interop/live/live_acmi.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <utility>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <unordered_map>
 
 #include "interop/live/live_state.h"
 #include "recording/acmi/acmi_lines.h"

@@ -1,6 +1,5 @@
 #include "playback/editing/edit_history.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "base/text/shell_word.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/playback/frames/volume_series.h"
+#include "emscape/playback/frames/field_series.h"
 #include "playback/frames/step_cache.h"
 
 namespace emscape::playback {

@@ -1,7 +1,5 @@
 #include "playback/series/series_state.h"
 
-#include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "base/files/file_digest.h"

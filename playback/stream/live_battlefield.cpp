@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <deque>
@@ -28,8 +27,6 @@
 
 namespace emscape::playback {
 namespace {
-
-using SteadyClock = std::chrono::steady_clock;
 
 constexpr double kExpire_s = 0.25;      ///< between two searches for what has timed out
 constexpr double kWake_s = 1.0 / 60;    ///< between two calls of `wake`

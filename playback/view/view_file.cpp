@@ -16,7 +16,6 @@
 #include "document/text_edit.h"
 #include "document/text_file.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/model/clock.h"
 #include "playback/view/view_settings.h"
 #include "render/transfer/transfer_format.h"
 #include "scenario/map/map_image.h"

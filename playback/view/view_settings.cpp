@@ -393,10 +393,6 @@ void addUnstored(Table& table) {
           "as the time between two pictures allows");
 }
 
-std::string rangeOf(const ValueSpec& of) {
-  return fmt::format("{:g}..{:g}{}{}", of.minimum, of.maximum, of.unit.empty() ? "" : " ", of.unit);
-}
-
 }  // namespace
 
 bool ViewSetting::isListOfTexts() const {
@@ -464,26 +460,6 @@ ViewChange changeOf(const ViewState& before, const ViewState& after) {
     change.*setting.affects = !setting.isSame(before, after);
   }
   return change;
-}
-
-std::string viewStateTable() {
-  std::string table = "| key | value | default | option | meaning |\n|---|---|---|---|---|\n";
-  for (const ViewSetting& setting : viewSettings()) {
-    if (setting.key.empty()) continue;
-    std::string value = setting.value_text, of_default = setting.default_text;
-    if (value.empty()) {
-      value = setting.isSwitch()   ? "true, false"
-              : setting.isChoice() ? fmt::format("{}", fmt::join(setting.spec.choices, ", "))
-                                   : rangeOf(setting.spec);
-    }
-    if (of_default.empty()) {
-      of_default = setting.text(ViewState{});
-      if (setting.isSwitch()) of_default = of_default == "on" ? "true" : "false";
-    }
-    table += fmt::format("| `{}` | {} | {} | {} | {} |\n", setting.key, value, of_default,
-                         setting.option.empty() ? "" : "`" + setting.option + "`", setting.meaning);
-  }
-  return table;
 }
 
 ValueRange parseRange(const std::string& text) {

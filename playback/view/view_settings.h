@@ -73,7 +73,4 @@ ViewChange changeOf(const ViewState& before, const ViewState& after);
 /// Parses "MIN:MAX". @throws Error (usage)
 ValueRange parseRange(const std::string& text);
 
-/// The table of docs/view-state.md, as Markdown.
-std::string viewStateTable();
-
 }  // namespace emscape::playback

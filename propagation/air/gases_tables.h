@@ -1,8 +1,6 @@
 /// The published tables for gases.cpp.
 #pragma once
 
-#include "propagation/air/gases.h"
-
 namespace emscape::propagation {
 
 /// Frequency (GHz) and six coefficients.

@@ -1,7 +1,6 @@
 /// Parameters of an emitter that ITU-R P.1812 and P.452 have in common, as plain data.
 #pragma once
 
-#include "emscape/base/host_device.h"
 #include "propagation/clear_air/climate.h"
 #include "propagation/diffraction/diffraction.h"
 #include "propagation/normal_deviate.h"

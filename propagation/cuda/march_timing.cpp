@@ -2,8 +2,6 @@
 
 #include <dlfcn.h>
 
-#include <algorithm>
-
 #include "base/stopwatch.h"
 #include "propagation/cuda/march_cuda.h"
 

@@ -16,7 +16,6 @@
 #include "emscape/scenario/model/poses.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/format/file.h"
-#include "emscape/volume/statistics.h"
 #include "python/extension/module.h"
 
 namespace emscape::python {

@@ -18,12 +18,10 @@
 namespace emscape::interop {
 namespace {
 
-constexpr double kMaxTime_s = 2.6e11;  ///< the year 9999
-constexpr double kMaxSpan_s = 9.9e7;   ///< of a scenario's track
-constexpr double kOutlierFactor = 3;   ///< of the speed without the position
-constexpr double kNoise_mps = 1;       ///< noise of a receiver that stands
-constexpr double kShortestStep_s = 1e-3;
-constexpr double kFastest_mps = 10e3;          ///< of any object; a satellite makes 8 km/s
+constexpr double kMaxTime_s = 2.6e11;          ///< the year 9999
+constexpr double kMaxSpan_s = 9.9e7;           ///< of a scenario's track
+constexpr double kOutlierFactor = 3;           ///< of the speed without the position
+constexpr double kNoise_mps = 1;               ///< noise of a receiver that stands
 constexpr double kLastSpreadsheetDay = 73050;  ///< of the year 2099
 
 /// Positions of one time that are farther apart (m) are those of several objects, if they are more than this

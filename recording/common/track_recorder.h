@@ -14,6 +14,9 @@
 
 namespace emscape::interop {
 
+/// Faster than any object: a satellite makes 8 km/s. Steps of a track that are shorter count as this.
+constexpr double kFastest_mps = 10e3, kShortestStep_s = 1e-3;
+
 /// Takes positions of objects in any order.
 class TrackRecorder {
  public:

@@ -4,9 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "recording/common/byte_source.h"

@@ -7,7 +7,6 @@
 
 #include "base/geodesy/position_limits.h"
 #include "base/text/count_text.h"
-#include "base/text/utf8.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"

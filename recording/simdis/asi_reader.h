@@ -1,7 +1,6 @@
 /// Reading of SIMDIS' ASCII scenarios (.asi).
 #pragma once
 
-#include <string>
 #include <string_view>
 
 #include "recording/common/byte_source.h"

@@ -1,9 +1,22 @@
 #include "recording/tracks/table_cells.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
 namespace emscape::interop {
+namespace {
+
+/// True if each comma has three digits after it, and then no further one.
+bool haveThreeDigits(const std::string& text) {
+  for (std::size_t at = text.find(','); at != std::string::npos; at = text.find(',', at + 1)) {
+    const std::size_t end = text.find_first_not_of("0123456789", at + 1);
+    if (std::min(end, text.size()) - at != 4) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 double secondsOf(double time) {
   constexpr double kUnixTime_ms = 1e11, kUnixTime_us = 1e14, kUnixTime_ns = 1e17;
@@ -66,6 +79,38 @@ std::optional<double> offsetOf_s(const std::string& cell) {
   const double hours_of_day = std::stod(hours) + std::stod(minutes) * kMinute_s / kHour_s;
   if (hours_of_day > kMost_h || std::stod(minutes) >= kMinute_s) return std::nullopt;
   return (is_west ? -1 : 1) * hours_of_day * kHour_s;
+}
+
+std::string TrackTable::nameOf(Column column) const {
+  return header.empty() ? "" : printableText(header[columns.at(column).index]);
+}
+
+std::optional<double> TrackTable::numberOf(std::string text, bool is_coordinate) const {
+  const std::size_t comma = text.rfind(',');
+  if (comma == std::string::npos) return numberIn(text);
+  if (separator != ',') {
+    if (text.find('.') < comma) text.erase(std::remove(text.begin(), text.end(), '.'), text.end());
+  } else if (!is_coordinate && haveThreeDigits(text)) {
+    text.erase(std::remove(text.begin(), text.end(), ','), text.end());
+  }
+  std::replace(text.begin(), text.end(), ',', '.');
+  return numberIn(text);
+}
+
+const std::string* TrackTable::cellOf(const std::vector<std::string>& cells, Column column) const {
+  const auto found = columns.find(column);
+  if (found == columns.end() || found->second.index >= cells.size()) return nullptr;
+  const std::string& cell = cells[found->second.index];
+  return cell.empty() ? nullptr : &cell;
+}
+
+std::optional<double> TrackTable::valueOf(const std::vector<std::string>& cells, Column column) const {
+  const std::string* const cell = cellOf(cells, column);
+  const bool is_coordinate = column == Column::latitude || column == Column::longitude;
+  const auto number = cell == nullptr ? std::nullopt : numberOf(*cell, is_coordinate);
+  if (!number) return std::nullopt;
+  const TableColumn& told = columns.at(column);
+  return told.is_degrees_minutes ? degreesOf(*number) : *number * told.factor;
 }
 
 }  // namespace emscape::interop

@@ -6,8 +6,10 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "recording/common/text.h"
+#include "recording/tracks/table_columns.h"
 
 namespace emscape::interop {
 
@@ -24,6 +26,25 @@ double degreesOf(double degrees_minutes);
 bool isFill(double number);
 /// An angle whose parts are apart, "52 06.1 N", as one word, "52:06.1N".
 std::string joinedAngle(const std::string& text);
+
+/// A table: its columns, and what the cells of its rows hold.
+struct TrackTable {
+  std::string file;
+  std::vector<std::string> header;  ///< empty: the format has none
+  Columns columns;
+  char separator = ',';
+
+  /// Of a column in the header, for messages; empty without a header.
+  std::string nameOf(Column column) const;
+  /// The cell of a column; null if the row has none, or nothing in it.
+  const std::string* cellOf(const std::vector<std::string>& cells, Column column) const;
+  /// In tables separated by semicolons or tabs the comma may be decimal, with dots between thousands. In
+  /// tables separated by commas a quoted one of a coordinate is decimal, others stand between thousands if
+  /// three digits follow each.
+  std::optional<double> numberOf(std::string text, bool is_coordinate = false) const;
+  /// In metres, degrees or seconds.
+  std::optional<double> valueOf(const std::vector<std::string>& cells, Column column) const;
+};
 
 /// A column without a role, as its rows show it.
 struct UnusedColumn {

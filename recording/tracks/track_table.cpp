@@ -8,12 +8,12 @@
 
 #include "base/geodesy/position_text.h"
 #include "emscape/base/error.h"
-#include "recording/common/dates.h"
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
 #include "recording/common/track_recorder.h"
 #include "recording/tracks/table_cells.h"
 #include "recording/tracks/table_columns.h"
+#include "recording/tracks/table_times.h"
 #include "recording/tracks/track_formats.h"
 
 namespace emscape::interop {
@@ -59,64 +59,65 @@ bool isComment(std::string_view line, const ReadOptions& options) {
 class TableReader {
  public:
   TableReader(const std::string& name, const ReadOptions& options)
-      : name_(name),
-        stem_(std::filesystem::path(name).stem().string()),
+      : stem_(std::filesystem::path(name).stem().string()),
         options_(options),
-        recorder_("track table", options) {}
+        recorder_("track table", options) {
+    table_.file = name;
+  }
 
   Recording read(LineReader& lines) {
     for (std::string_view line; lines.next(line);) {
       line = lineOf(line);
-      if (columns_.empty() && !line.empty() && line.front() == '#') units_ = headerOf(line);
-      if (columns_.empty() ? isComment(line, options_) : line.empty() || line.front() == '#') continue;
-      if (columns_.empty() && isBaseStation(line)) {
-        columns_ = columnsOfBaseStation();
+      if (table_.columns.empty() && !line.empty() && line.front() == '#') units_ = headerOf(line);
+      if (table_.columns.empty() ? isComment(line, options_) : line.empty() || line.front() == '#') continue;
+      if (table_.columns.empty() && isBaseStation(line)) {
+        table_.columns = columnsOfBaseStation();
         is_base_station_ = true;
-      } else if (columns_.empty()) {
+      } else if (table_.columns.empty()) {
         takeHeader(line, lines.line());
         continue;
       }
       location_ = fmt::format("line {}", lines.line());
       ++recorder_.tally().records;
-      const std::vector<std::string> cells = cellsOf(line, separator_);
+      const std::vector<std::string> cells = cellsOf(line, table_.separator);
       if (hasSurplus(cells)) {
         bad(
             fmt::format("it has {} cells, the header {}; are decimals written with commas, or texts with "
                         "separators?",
-                        cells.size(), header_.size()));
+                        cells.size(), table_.header.size()));
       } else {
         takeRow(cells);
       }
     }
-    if (is_utc_) recorder_.hasUtc();
+    if (times_.areUtc()) recorder_.hasUtc();
     recorder_.tellObjectsApartBy(objectsRemedy());
     Recording recording = recorder_.finish();
-    recording.has_times_of_day = has_times_of_day_;
+    recording.has_times_of_day = times_.areOfDay();
     if (!letters_told_.empty()) recording.tally.notes.push_back(letters_told_);
     tellUnused(recording.tally);
-    tellLongSteps(recording.tally);
+    times_.tellLongSteps(path_deg_, recording.tally);
     return recording;
   }
 
  private:
   void takeHeader(std::string_view line, long long number) {
-    separator_ = separatorOf(line);
-    header_ = headerOf(line);
+    table_.separator = separatorOf(line);
+    table_.header = headerOf(line);
     if (!isUtf8(line)) utf8Of(line, "", &letters_told_);
-    const std::vector<std::string>& header = header_;
-    columns_ = columnsOf(header, options_);
+    const std::vector<std::string>& header = table_.header;
+    table_.columns = columnsOf(header, options_);
     takeUnitsAbove();
     for (const Column needed : {Column::time, Column::latitude, Column::longitude}) {
-      const bool is_in_position = needed != Column::time && columns_.count(Column::position) != 0;
-      if (is_in_position || columns_.count(needed) != 0) continue;
-      throw Error(ErrorCode::bad_input, {name_, static_cast<int>(number), 1},
+      const bool is_in_position = needed != Column::time && table_.columns.count(Column::position) != 0;
+      if (is_in_position || table_.columns.count(needed) != 0) continue;
+      throw Error(ErrorCode::bad_input, {table_.file, static_cast<int>(number), 1},
                   fmt::format("no column for the {}; name it (--columns, or 'columns' of a track): "
                               "time=NAME,latitude=NAME,longitude=NAME,height=NAME:ft; where several columns "
                               "make it (year, month, ...), join them in one first. The table has {}",
                               roleOf(needed), printableText(fmt::format("{}", fmt::join(header, ", ")))));
     }
     for (std::size_t i = 0; i < header.size(); ++i) {
-      const bool is_used = std::any_of(columns_.begin(), columns_.end(),
+      const bool is_used = std::any_of(table_.columns.begin(), table_.columns.end(),
                                        [i](const auto& column) { return column.second.index == i; });
       if (!is_used && !header[i].empty()) unused_.push_back({i, {}, {}, 0, 0, false});
     }
@@ -125,10 +126,10 @@ class TableReader {
   /// Units of heights in a comment above the header that has a cell for each column, as Garmin's avionics
   /// write it.
   void takeUnitsAbove() {
-    if (units_.size() != header_.size()) return;
+    if (units_.size() != table_.header.size()) return;
     for (const Column height : {Column::height_msl, Column::height_ellipsoid, Column::height_pressure}) {
-      const auto found = columns_.find(height);
-      if (found == columns_.end() || found->second.has_unit) continue;
+      const auto found = table_.columns.find(height);
+      if (found == table_.columns.end() || found->second.has_unit) continue;
       const std::string& unit = units_[found->second.index];
       const auto factor = unit.empty() ? std::nullopt : factorOfUnit(unit);
       if (!factor) continue;
@@ -137,21 +138,7 @@ class TableReader {
     }
   }
 
-  /// Whole numbers without a unit that are far apart, in which an object creeps, are no seconds.
-  void tellLongSteps(ReadingTally& tally) const {
-    constexpr double kLongStep_s = 3e4, kCreeping_mps = 0.05, kDegree_m = 111e3;
-    const double span_s = last_time_ - first_time_;
-    if (plain_times_ < 3 || span_s < kLongStep_s * static_cast<double>(plain_times_ - 1) || path_deg_ == 0 ||
-        path_deg_ * kDegree_m > kCreeping_mps * span_s)
-      return;
-    const std::string name = header_.empty() ? "" : printableText(header_[columns_.at(Column::time).index]);
-    tally.notes.push_back(
-        fmt::format("times of column '{0}' are taken as seconds; they are {1:.6g} apart on average: if they "
-                    "are in microseconds or milliseconds, columns tell it: time={0}:us or time={0}:ms",
-                    name, span_s / static_cast<double>(plain_times_ - 1)));
-  }
-
-  std::string nameOf(const UnusedColumn& column) const { return printableText(header_[column.index]); }
+  std::string nameOf(const UnusedColumn& column) const { return printableText(table_.header[column.index]); }
 
   /// What tells the objects of rows apart: of the columns without a role those of texts that repeat, or of
   /// numbers if there are none.
@@ -217,51 +204,10 @@ class TableReader {
     return found == 0 ? value_deg : -std::abs(value_deg);
   }
 
-  /// In tables separated by semicolons or tabs the comma may be decimal, with dots between thousands. In
-  /// tables separated by commas a quoted one of a coordinate is decimal, others stand between thousands if
-  /// three digits follow each.
-  std::optional<double> numberOf(std::string text, bool is_coordinate = false) const {
-    const std::size_t comma = text.rfind(',');
-    if (comma == std::string::npos) return numberIn(text);
-    if (separator_ != ',') {
-      if (text.find('.') < comma) text.erase(std::remove(text.begin(), text.end(), '.'), text.end());
-    } else if (!is_coordinate && haveThreeDigits(text)) {
-      text.erase(std::remove(text.begin(), text.end(), ','), text.end());
-    }
-    std::replace(text.begin(), text.end(), ',', '.');
-    return numberIn(text);
-  }
-
-  /// True if each comma has three digits after it, and then no further one.
-  static bool haveThreeDigits(const std::string& text) {
-    for (std::size_t at = text.find(','); at != std::string::npos; at = text.find(',', at + 1)) {
-      const std::size_t end = text.find_first_not_of("0123456789", at + 1);
-      if (std::min(end, text.size()) - at != 4) return false;
-    }
-    return true;
-  }
-
-  /// The cell of a column; null if the row has none, or nothing in it.
-  const std::string* cellOf(const std::vector<std::string>& cells, Column column) const {
-    const auto found = columns_.find(column);
-    if (found == columns_.end() || found->second.index >= cells.size()) return nullptr;
-    const std::string& cell = cells[found->second.index];
-    return cell.empty() ? nullptr : &cell;
-  }
-
-  std::optional<double> valueOf(const std::vector<std::string>& cells, Column column) const {
-    const std::string* const cell = cellOf(cells, column);
-    const bool is_coordinate = column == Column::latitude || column == Column::longitude;
-    const auto number = cell == nullptr ? std::nullopt : numberOf(*cell, is_coordinate);
-    if (!number) return std::nullopt;
-    const TableColumn& told = columns_.at(column);
-    return told.is_degrees_minutes ? degreesOf(*number) : *number * told.factor;
-  }
-
   /// True if a row has more cells than the header, but for empty ones at its end.
   bool hasSurplus(const std::vector<std::string>& cells) const {
-    if (is_base_station_ || header_.empty() || cells.size() <= header_.size()) return false;
-    return std::any_of(cells.begin() + static_cast<std::ptrdiff_t>(header_.size()), cells.end(),
+    if (is_base_station_ || table_.header.empty() || cells.size() <= table_.header.size()) return false;
+    return std::any_of(cells.begin() + static_cast<std::ptrdiff_t>(table_.header.size()), cells.end(),
                        [](const std::string& cell) { return !cell.empty(); });
   }
 
@@ -270,103 +216,10 @@ class TableReader {
     return std::nullopt;
   }
 
-  std::optional<double> timeOf(const std::vector<std::string>& cells) {
-    const std::string* const told = cellOf(cells, Column::time);
-    if (told == nullptr) return bad("it has no time");
-    const TableColumn& column = columns_.at(Column::time);
-    const std::string* const date = cellOf(cells, Column::date);
-    const bool is_compact = date == nullptr && !column.has_unit && isCompactDate(*told);
-    if (date == nullptr && !is_compact) {
-      if (const auto number = numberOf(*told)) {
-        const double time = *number * column.factor;
-        if (column.day_of_1970 > 0 || column.begin_s > 0) {
-          is_utc_ = true;
-          return column.begin_s > 0 ? *number + column.begin_s
-                                    : (*number - column.day_of_1970) * kSecondsPerDay;
-        }
-        recorder_.mayBeDays(!column.has_unit);
-        if (!column.has_unit && time == std::floor(time)) {
-          if (plain_times_++ == 0) first_time_ = secondsOf(time);
-          last_time_ = secondsOf(time);
-        }
-        if (time > kFirstUnixTime_s) {
-          is_utc_ = true;
-          tellGpsName(column);
-        }
-        return secondsOf(time);
-      }
-    }
-    std::string text = is_compact        ? told->substr(0, 8) + "T" + told->substr(8)
-                       : date == nullptr ? *told
-                                         : *date + " " + *told;
-    double offset_s = 0;
-    if (const std::string* const cell = cellOf(cells, Column::utc_offset);
-        cell != nullptr && cell->find_first_not_of(" ") != std::string::npos && !isUtc(text)) {
-      const std::optional<double> offset = offsetOf_s(*cell);
-      if (!offset)
-        return bad(
-            fmt::format("its offset from UTC '{}' cannot be read; it is one as -04:00, in hours and minutes",
-                        printableText(*cell)));
-      offset_s = *offset;
-      recorder_.assume(fmt::format("times are local: column '{}' gives their offset from UTC",
-                                   printableText(header_[columns_.at(Column::utc_offset).index])));
-    }
-    const DateOrder order = date == nullptr ? column.order : columns_.at(Column::date).order;
-    if (const auto time_s = utcSeconds(text, order)) {
-      is_utc_ = true;
-      return *time_s - offset_s;
-    }
-    if (needsDateOrder(text)) {
-      throw Error(
-          ErrorCode::bad_input, {name_, 0, 0},
-          fmt::format(
-              "{}: the date '{}' may begin with its day or its month; tell it with columns: {}=NAME:dmy "
-              "or {}=NAME:mdy",
-              location_, printableText(text), roleOf(date == nullptr ? Column::time : Column::date),
-              roleOf(date == nullptr ? Column::time : Column::date)));
-    }
-    if (const auto time_s = date == nullptr ? timeOfDay(text) : std::nullopt) return *time_s - offset_s;
-    return bad(
-        fmt::format("its time '{}' cannot be read; it is one as 2026-06-01T06:00:00Z or "
-                    "2026-06-01 08:00:00+02:00, in seconds since 1970 or of the scenario, or hh:mm:ss",
-                    printableText(text)));
-  }
-
-  /// True if a time, or the name of its column, says that it is UTC or has its own offset.
-  bool isUtc(const std::string& text) const {
-    const std::string name = header_.empty() ? "" : lowerCase(header_[columns_.at(Column::time).index]);
-    for (const char* const word : {"utc", "gmt", "zulu"}) {
-      if (name.find(word) != std::string::npos) return true;
-    }
-    const std::size_t clock = text.find(':');
-    return text.find_last_of("Zz") != std::string::npos ||
-           (clock != std::string::npos && text.find_first_of("+-", clock) != std::string::npos);
-  }
-
-  /// hh:mm:ss without a date, as times of a day that is not told, and of the next ones where they fall.
-  std::optional<double> timeOfDay(const std::string& text) {
-    if (is_utc_ || std::count(text.begin(), text.end(), ':') != 2) return std::nullopt;
-    const auto time_s = utcSeconds("1970-01-01 " + text);
-    if (!time_s) return std::nullopt;
-    has_times_of_day_ = true;
-    if (*time_s + day_s_ < last_of_day_s_ - kSecondsPerDay / 2) day_s_ += kSecondsPerDay;
-    last_of_day_s_ = *time_s + day_s_;
-    return last_of_day_s_;
-  }
-
-  void tellGpsName(const TableColumn& column) {
-    const std::string& name = header_.empty() ? stem_ : header_[column.index];
-    if (header_.empty() || lowerCase(name).find("gps") == std::string::npos) return;
-    recorder_.assume(
-        fmt::format("time of column '{0}' taken as since 1970; if it is GPS time, since 1980, columns tell "
-                    "it: time={0}:gps",
-                    printableText(name)));
-  }
-
   /// Latitude and longitude: numbers, or with minutes, seconds and the letters of the directions.
   std::optional<std::pair<double, double>> placeOf(const std::vector<std::string>& cells) {
-    const auto latitude_deg = valueOf(cells, Column::latitude),
-               longitude_deg = valueOf(cells, Column::longitude);
+    const auto latitude_deg = table_.valueOf(cells, Column::latitude),
+               longitude_deg = table_.valueOf(cells, Column::longitude);
     if (latitude_deg && longitude_deg) {
       const bool is_scaled = std::abs(*latitude_deg) > kScaledFrom || std::abs(*longitude_deg) > kScaledFrom;
       if (is_scaled) recorder_.assume("coordinates beyond a million: taken as 1e-7 degrees");
@@ -378,9 +231,9 @@ class TableReader {
           north_deg ? inHemisphere(*longitude_deg * unit, cells, hemispheres_->second, "EW") : std::nullopt;
       return east_deg ? std::optional(std::pair(*north_deg, *east_deg)) : std::nullopt;
     }
-    const std::string *const north = cellOf(cells, Column::latitude),
-                             *const east = cellOf(cells, Column::longitude),
-                             *const both = cellOf(cells, Column::position);
+    const std::string *const north = table_.cellOf(cells, Column::latitude),
+                             *const east = table_.cellOf(cells, Column::longitude),
+                             *const both = table_.cellOf(cells, Column::position);
     if (both == nullptr && (north == nullptr || east == nullptr)) {
       if (!is_base_station_) return bad("it has no latitude or longitude");
       countIgnored(recorder_.tally(), "message without a position");
@@ -406,15 +259,15 @@ class TableReader {
   /// It has both coordinates in one column.
   bool isOfFlightradar() const {
     const auto has = [this](const char* name) {
-      return std::any_of(header_.begin(), header_.end(),
+      return std::any_of(table_.header.begin(), table_.header.end(),
                          [name](const std::string& cell) { return lowerCase(cell) == name; });
     };
-    return columns_.count(Column::position) != 0 && has("callsign") && has("direction");
+    return table_.columns.count(Column::position) != 0 && has("callsign") && has("direction");
   }
 
   /// Its heights are in metres, by its documentation.
   bool isOfOpenSky(Column column) const {
-    const std::string name = lowerCase(header_[columns_.at(column).index]);
+    const std::string name = lowerCase(table_.header[table_.columns.at(column).index]);
     return name == "geoaltitude" || name == "baroaltitude" || name == "geo_altitude" ||
            name == "baro_altitude";
   }
@@ -423,25 +276,25 @@ class TableReader {
   std::optional<double> heightOf_m(const std::vector<std::string>& cells, double latitude_deg,
                                    double longitude_deg) {
     for (const Column column : {Column::height_msl, Column::height_ellipsoid, Column::height_pressure}) {
-      const std::string* const cell = cellOf(cells, column);
+      const std::string* const cell = table_.cellOf(cells, column);
       if (cell == nullptr) continue;
-      auto height_m = valueOf(cells, column);
+      auto height_m = table_.valueOf(cells, column);
       if (!height_m && lowerCase(*cell) == "ground") {
         recorder_.assume("height of an object on the ground: 0 m is taken");
         return 0;
       }
-      const bool is_unknown = height_m ? isFill(*numberOf(*cell))  // "n/a", "null", "-"
+      const bool is_unknown = height_m ? isFill(*table_.numberOf(*cell))  // "n/a", "null", "-"
                                        : cell->find_first_of("0123456789") == std::string::npos;
       if (is_unknown) continue;
       if (!height_m) return bad(fmt::format("its height '{}' is no number", printableText(*cell)));
-      if (!columns_.at(column).has_unit && isOfFlightradar()) {
+      if (!table_.columns.at(column).has_unit && isOfFlightradar()) {
         recorder_.assume("height without a unit in a table of Flightradar24: taken as feet");
         *height_m *= kMetresPerFoot;
-      } else if (!columns_.at(column).has_unit && !isOfOpenSky(column)) {
+      } else if (!table_.columns.at(column).has_unit && !isOfOpenSky(column)) {
         recorder_.assume(fmt::format(
             "height without a unit in column '{0}': taken as metres; if it is in feet, columns tell it: "
             "{1}={0}:ft",
-            printableText(header_[columns_.at(column).index]), roleOf(column)));
+            table_.nameOf(column), roleOf(column)));
       }
       if (column == Column::height_ellipsoid && std::abs(latitude_deg) <= 90 &&
           std::abs(longitude_deg) <= 720)
@@ -456,7 +309,7 @@ class TableReader {
   void takeRow(const std::vector<std::string>& cells) {
     const auto place = placeOf(cells);
     for (UnusedColumn& column : unused_) column.take(column.index < cells.size() ? cells[column.index] : "");
-    const auto time_s = place ? timeOf(cells) : std::nullopt;
+    const auto time_s = place ? times_.of(cells, location_) : std::nullopt;
     if (!time_s) return;
     if (last_place_)
       path_deg_ += std::hypot(place->first - last_place_->first, place->second - last_place_->second);
@@ -468,34 +321,30 @@ class TableReader {
     const auto height_m = heightOf_m(cells, pose.latitude_deg, pose.longitude_deg);
     if (!height_m) return;
     pose.height_msl_m = *height_m;
-    const auto heading_deg = valueOf(cells, Column::heading);
+    const auto heading_deg = table_.valueOf(cells, Column::heading);
     constexpr double kTurn_deg = 360;
     if (heading_deg && std::abs(*heading_deg) <= kTurn_deg) {
       pose.heading_deg = *heading_deg;
-      pose.pitch_deg = valueOf(cells, Column::pitch).value_or(kUnknown);
-      pose.roll_deg = valueOf(cells, Column::roll).value_or(kUnknown);
+      pose.pitch_deg = table_.valueOf(cells, Column::pitch).value_or(kUnknown);
+      pose.roll_deg = table_.valueOf(cells, Column::roll).value_or(kUnknown);
     } else if (heading_deg) {  // AIS writes 511 for an unknown one
       recorder_.assume("heading beyond a turn: not known");
     }
-    const std::string* const id = cellOf(cells, Column::id);
+    const std::string* const id = table_.cellOf(cells, Column::id);
     recorder_.add(recorder_.objectOf(id == nullptr ? stem_ : idText(*id)), pose, location_);
   }
 
-  std::string name_, stem_, location_, letters_told_;
+  std::string stem_, location_, letters_told_;
   const ReadOptions& options_;
   TrackRecorder recorder_;
-  std::vector<std::string> header_, units_;  ///< units_: the last comment above the header
-  Columns columns_;
-  long long plain_times_ = 0;  ///< whole numbers without a unit, since no known time
-  double first_time_ = 0, last_time_ = 0;
-  double path_deg_ = 0;  ///< way of all rows, roughly
+  TrackTable table_;
+  TableTimes times_{table_, recorder_};
+  std::vector<std::string> units_;  ///< the last comment above the header
+  double path_deg_ = 0;             ///< way of all rows, roughly
   std::optional<std::pair<double, double>> last_place_;
-  char separator_ = ',';
   std::vector<UnusedColumn> unused_;
   std::optional<std::pair<std::size_t, std::size_t>> hemispheres_;  ///< columns of N or S, and of E or W
-  double day_s_ = 0, last_of_day_s_ = 0;
-  bool is_utc_ = false, has_times_of_day_ = false, is_base_station_ = false,
-       has_looked_for_hemispheres_ = false;
+  bool is_base_station_ = false, has_looked_for_hemispheres_ = false;
 };
 
 }  // namespace

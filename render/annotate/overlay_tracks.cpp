@@ -1,7 +1,5 @@
 /// Tracks of moving platforms.
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 #include "render/annotate/overlay_parts.h"
 

@@ -2,8 +2,6 @@
 /// device.
 #pragma once
 
-#include <cmath>
-
 #include "base/math/device_math.h"
 #include "emscape/base/host_device.h"
 #include "render/cast/rgba.h"

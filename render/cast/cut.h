@@ -9,7 +9,6 @@
 #include "emscape/base/vec.h"
 #include "emscape/render/scene/cut_plane.h"
 #include "render/cast/compositing.h"
-#include "render/cast/rgba.h"
 
 namespace emscape::render {
 

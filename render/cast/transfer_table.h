@@ -1,7 +1,6 @@
 /// A transfer function for the ray caster: tables for one sampling step.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "emscape/render/scene/render_settings.h"

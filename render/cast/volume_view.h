@@ -1,7 +1,6 @@
 /// A volume for the ray caster: plain data, sampling, and the bricks that need no sampling.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "base/math/device_math.h"

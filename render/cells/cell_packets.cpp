@@ -1,6 +1,5 @@
 #include "render/cells/cell_packets.h"
 
-#include "base/math/simd_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cells/cell_packets.cpp"
 #include <hwy/foreach_target.h>  // compiles the rest once for each kind of vector register

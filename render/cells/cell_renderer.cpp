@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"

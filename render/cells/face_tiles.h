@@ -1,7 +1,6 @@
 /// Boundary faces of a mesh by the picture's tiles: the entries of rays into the mesh.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "emscape/render/scene/camera.h"

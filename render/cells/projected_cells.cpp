@@ -1,7 +1,6 @@
 #include "render/cells/projected_cells.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace emscape::render {
 namespace {

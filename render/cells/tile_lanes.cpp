@@ -1,4 +1,3 @@
-#include "base/math/simd_targets.h"
 #include "render/cells/tile_projection.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cells/tile_lanes.cpp"

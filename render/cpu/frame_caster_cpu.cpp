@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "base/stopwatch.h"
-#include "emscape/base/error.h"
 #include "render/cpu/raycast_cpu.h"
 #include "render/patterns/adaptive.h"
 #include "render/patterns/edges.h"

@@ -1,6 +1,5 @@
 #include "render/cpu/packets.h"
 
-#include "base/math/simd_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cpu/packets.cpp"
 #include <hwy/foreach_target.h>  // compiles the rest once for each kind of vector register

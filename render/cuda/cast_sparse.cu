@@ -14,7 +14,10 @@ void startSparse(const Launch& launch, CompositingMode mode, Sampling sampling, 
     case Sampling::sparse_accurate:
       return shades ? startVolume<AccurateTileSampler, GlobalColors, true>(launch, mode, stream)
                     : startVolume<AccurateTileSampler, GlobalColors, false>(launch, mode, stream);
-    default:
+    case Sampling::sparse:
+    case Sampling::nearest:  // these are cast by castPixels()
+    case Sampling::accurate:
+    case Sampling::filtered:
       break;
   }
   return shades ? startVolume<FilteredTileSampler, SharedColors, true>(launch, mode, stream)

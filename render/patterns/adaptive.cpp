@@ -1,7 +1,6 @@
 #include "render/patterns/adaptive.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "base/math/simd.h"

@@ -1,7 +1,7 @@
 /// The largest estimated error that the pattern `adaptive` accepts.
 #pragma once
 
-#include "emscape/render/scene/pattern.h"
+#include "emscape/render/scene/frame.h"
 
 namespace emscape::render {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/render/scene/pattern.h"
+#include "emscape/render/scene/frame.h"
 #include "render/patterns/running_median.h"
 
 namespace emscape::render {

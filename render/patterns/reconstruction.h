@@ -6,7 +6,7 @@
 
 #include "emscape/base/host_device.h"
 #include "emscape/render/picture/image.h"
-#include "emscape/render/scene/pattern.h"
+#include "emscape/render/scene/frame.h"
 
 namespace emscape::render {
 

@@ -1,7 +1,6 @@
 /// The ground in each pixel of a picture, kept while the camera does not move.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>

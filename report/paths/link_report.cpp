@@ -20,6 +20,7 @@ namespace {
 
 using emfield::Detection;
 using emfield::DetectionRow;
+using emfield::kDetected;
 using emfield::Link;
 using emfield::LinkRow;
 using emfield::PathRow;
@@ -27,9 +28,6 @@ using scenario::Scenario;
 
 /// Maximum rows of a table per pair.
 constexpr std::size_t kTableRows = 21;
-
-/// The threshold of detections.
-constexpr double kDetected = 0.5;
 
 /// The first time at which all looks so far detect with the threshold's probability.
 std::optional<double> firstByLooks_s(const Detection& detection) {

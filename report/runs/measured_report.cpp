@@ -1,7 +1,6 @@
 #include "report/runs/measured_report.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "report/text.h"
 #include "report/warnings.h"

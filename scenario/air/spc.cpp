@@ -1,7 +1,6 @@
 // Soundings of the Storm Prediction Center, as SHARPpy reads and writes them.
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

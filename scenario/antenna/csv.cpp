@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -212,11 +211,6 @@ PatternFile readGridPattern(const std::string& file) {
     for (const AxisSample& a : columns) pattern.amplitudes.push_back(static_cast<float>(grid.valueAt(a, e)));
   }
   return pattern;
-}
-
-AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
-  std::vector<std::string> warnings;
-  return antennaOf(file, readGridPattern(file), gain_dbi, warnings);
 }
 
 }  // namespace emscape::scenario

@@ -37,7 +37,9 @@ AntennaPtr antennaOf(const std::string& file, const PatternFile& pattern, double
 
 /// MSI/Planet: .msi, .pln.
 PatternFile readMsiPattern(const std::string& file);
-/// CSV with the columns azimuth_deg, elevation_deg, attenuation_db.
+/// CSV grid: columns `azimuth_deg,elevation_deg,attenuation_db`, rows in any order, one for every pair of the
+/// azimuths and elevations in the file; coverage as for readCsvCuts(). Interpolation is linear in amplitude.
+/// @throws Error (bad_input) with file, line and column; a missing row is named by its pair
 PatternFile readGridPattern(const std::string& file);
 /// CSV with other columns: theta and phi, or azimuth and elevation; gain, directivity or attenuation.
 PatternFile readTablePattern(const std::string& file);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "emscape/base/units.h"
 #include "scenario/antenna/pattern.h"
 
 namespace emscape::scenario {

@@ -72,11 +72,6 @@ double gainFromArray_dbi(int columns, int rows, double spacing_wavelengths, cons
 /// @throws Error (bad_input) with file, line and column
 AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& elevation_file, double gain_dbi);
 
-/// CSV grid: columns `azimuth_deg,elevation_deg,attenuation_db`, rows in any order, one for every pair of the
-/// azimuths and elevations in the file; coverage as for cuts. Interpolation is linear in amplitude.
-/// @throws Error (bad_input) with file, line and column; a missing row is named by its pair
-AntennaPtr readCsvGrid(const std::string& file, double gain_dbi);
-
 /// Frequencies (Hz) for which an antenna file states its pattern; of a single frequency: twice that.
 struct StatedBand {
   double lowest_hz = 0, highest_hz = HUGE_VAL;

@@ -30,7 +30,7 @@ PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Pla
                                    ParseContext& context) {
   PlacedReceiver receiver;
   static_cast<ReceiverProfile&>(receiver) = parseReceiverProfile(section);
-  receiver.platform = parseCarrier(section, platforms, context);
+  receiver.platform = indexNamedBy(section, "platform", "platform", platforms, context);
   if (section.has("antenna")) {
     receiver.antenna = parseAntenna(section.section("antenna"), context);
     if (section.has("gain_dbi")) {
@@ -62,7 +62,7 @@ PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Pla
 Target parseTarget(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
   Target target;
   target.name = section.text("name");
-  target.platform = parseCarrier(section, platforms, context);
+  target.platform = indexNamedBy(section, "platform", "platform", platforms, context);
   target.rcs_m2 = section.optionalNumber("rcs_m2").value_or(target.rcs_m2);
   target.swerling = section.integer("swerling");
   if (!section.has("rcs_file") || !context.addNamed(section, "rcs_file")) return target;

@@ -8,13 +8,11 @@
 #include <limits>
 
 #include "base/files/file_reading.h"
-#include "base/text/utc.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"
 #include "emscape/base/units.h"
 #include "propagation/air/sky_noise.h"
 #include "propagation/registry/model_info.h"
-#include "recording/read_recording.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/antenna/tables.h"
 
@@ -236,6 +234,26 @@ propagation::ModelSettings parsePropagation(const Section& section, ParseContext
   return settings;
 }
 
+/// Index of the platform to which an emitter's antenna turns; -1: a problem.
+int parseVictim(const Section& section, const Emitter& emitter, const std::vector<Platform>& platforms,
+                ParseContext& context) {
+  const Section scan = section.section("scan");
+  const int victim = indexNamedBy(scan, "victim", "platform", platforms, context);
+  if (victim >= 0 && victim == emitter.platform) {
+    context.problems.addError(
+        scan.locationOf("victim"),
+        fmt::format("'victim' is '{}', the platform of '{}' itself", scan.text("victim"), emitter.name));
+  }
+  if (emitter.kind == EmitterKind::radar) {
+    context.problems.addError(
+        scan.locationOf("kind"),
+        fmt::format("'kind' is victim, for jammers and transmitters; '{}' is a radar: track "
+                    "turns it onto its targets",
+                    emitter.name));
+  }
+  return victim;
+}
+
 }  // namespace
 
 std::string ParseContext::resolve(const std::string& name) const {
@@ -271,83 +289,32 @@ bool ParseContext::addNamed(const Section& section, const std::string& key, std:
   return true;
 }
 
-namespace {
-
-SitePosition positionOf(const Section& section) {
-  return {section.number("latitude_deg"), section.number("longitude_deg"),
-          section.optionalNumber("height_msl_m"), section.optionalNumber("height_agl_m"), std::nullopt};
-}
-
-/// The points that the scenario itself lists.
-std::vector<TrackPoint> listedTrack(const Section& track, ParseContext& context) {
-  std::vector<TrackPoint> points;
-  for (const Section& item : track.sections("points")) {
-    const TrackPoint point{item.number("t_s"), positionOf(item), item.optionalNumber("heading_deg"),
-                           item.optionalNumber("pitch_deg"), item.optionalNumber("roll_deg")};
-    if (!points.empty() && point.t_s <= points.back().t_s) {
-      context.problems.addError(
-          item.locationOf("t_s"),
-          fmt::format("'t_s' is {}, not above the {} s of the point before", point.t_s, points.back().t_s));
-    }
-    if (!points.empty() &&
-        point.position.height_agl_m.has_value() != points.front().position.height_agl_m.has_value()) {
-      context.problems.addError(item.location(), "all points of a track must have the same kind of height");
-    }
-    points.push_back(point);
+AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
+  bool readable = true;
+  for (const char* key : {"file", "azimuth_file", "elevation_file"}) {
+    readable = (!section.has(key) || context.addNamed(section, key)) && readable;
   }
-  return points;
-}
-
-std::vector<TrackPoint> useTrack(const Section& track, const std::string& name,
-                                 const std::shared_ptr<const TrackFile>& read, ParseContext& context) {
-  context.files.tracks[name] = read;
-  for (const std::string& warning : read->warnings) {
-    const std::string text = track.text("file") + ": " + warning;
-    if (context.told_of_tracks.insert(text).second)
-      context.problems.addWarning(track.locationOf("file"), text);
+  if (!readable || !section.sound()) return nullptr;
+  if (section.has("taper_side_lobe_db") && section.choice<TaperKind>("taper") != TaperKind::taylor) {
+    context.problems.addError(section.locationOf("taper_side_lobe_db"),
+                              "'taper_side_lobe_db' is the design level of taper: taylor; 'taper' is " +
+                                  std::string(toString(section.choice<TaperKind>("taper"))));
   }
-  return read->points;
-}
-
-std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
-  if (track.has("points")) return listedTrack(track, context);
-  const std::string file = context.resolve(track.text("file"));
-  const TrackChoice choice{track.text("object"), track.text("columns"),
-                           track.optionalNumber("gap_s").value_or(0), track.optionalNumber("height_agl_m")};
-  const auto nameOf = [&](const std::string& extra) {
-    return fmt::format("{}\n{}\n{}\n{}", file, choice.columns, choice.object, extra);
-  };
-  const std::string name = nameOf(
-      fmt::format("{} {} {}", choice.gap_s, choice.height_agl_m.value_or(std::nan("")), context.epoch_utc));
-  for (const NamedFiles* read : {context.before, static_cast<const NamedFiles*>(&context.files)}) {
-    const auto known = read != nullptr ? read->tracks.find(name) : context.files.tracks.end();
-    if (read == nullptr || known == read->tracks.end()) continue;
-    if (!context.addNamed(track, "file")) return {};
-    return useTrack(track, name, known->second, context);
+  const std::string description = document::flowText(*section.node(), true);
+  AntennaPtr& antenna = context.files.antennas[description];
+  if (!antenna && context.before != nullptr && context.before->antennas.count(description) != 0) {
+    antenna = context.before->antennas.at(description);
+    context.files.antenna_bands.insert(context.before->antenna_bands.begin(),
+                                       context.before->antenna_bands.end());
   }
-  std::string bytes;
-  std::shared_ptr<const interop::Recording>& recording = context.recordings[file + "\n" + choice.columns];
-  if (!context.addNamed(track, "file", recording ? nullptr : &bytes)) return {};
-  TrackFile read;
   try {
-    if (!recording && isRecordedTrack(bytes, choice)) {
-      interop::ReadOptions options;
-      options.columns = choice.columns;
-      recording = std::make_shared<const interop::Recording>(interop::readRecordingIn(bytes, file, options));
-    }
-    read = recording ? recordedTrack(*recording, choice, parseUtc_ms(context.epoch_utc))
-                     : TrackFile{parseTrack(file, bytes, track.locationOf("file"), context.problems), {}};
+    if (!antenna) antenna = makeConsistentAntenna(section, context);
   } catch (const Error& error) {
-    const SourceLocation location =
-        error.location().file.empty() ? SourceLocation{file, 0, 0} : error.location();
-    context.problems.addErrorElsewhere(track.locationOf("file"), location, error.message());
-    return {};
+    const SourceLocation location = error.location().file.empty() ? section.location() : error.location();
+    context.problems.addErrorElsewhere(section.location(), location, error.message());
   }
-  applyChoice(choice, read.points);
-  return useTrack(track, name, std::make_shared<const TrackFile>(std::move(read)), context);
+  return antenna;
 }
-
-}  // namespace
 
 ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context) {
   ScanSpec scan;
@@ -381,135 +348,6 @@ ScanSpec parseScan(const Section& section, bool steers_electronically, ParseCont
   return scan;
 }
 
-namespace {
-
-/// Side of a symbol, its 4th digit. @return none if the digit is that of no side
-std::optional<Side> sideOfSymbol(const std::string& sidc) {
-  switch (sidc[3]) {
-    case '0':  // pending
-    case '1':
-      return Side::unknown;
-    case '2':  // assumed friend
-    case '3':
-      return Side::friendly;
-    case '4':
-      return Side::neutral;
-    case '5':  // suspect
-    case '6':
-      return Side::hostile;
-    default:
-      return std::nullopt;
-  }
-}
-
-void parseSymbol(const Section& section, Platform& platform, ParseContext& context) {
-  if (section.has("side")) platform.side = section.choice<Side>("side");
-  if (!section.has("sidc")) return;
-  const std::string sidc = section.text("sidc");
-  const bool has_digits = sidc.find_first_not_of("0123456789") == std::string::npos;
-  if (!has_digits || (sidc.size() != 20 && sidc.size() != 30)) {
-    context.problems.addError(
-        section.locationOf("sidc"),
-        fmt::format(
-            "'sidc' is '{}': expected 20 or 30 digits, as MIL-STD-2525D and APP-6D have them, such as "
-            "\"10031500002203000000\" for a friendly radar. For a frame without an icon, give 'side' instead",
-            sidc));
-    return;
-  }
-  const std::optional<Side> side = sideOfSymbol(sidc);
-  if (!side) {
-    context.problems.addError(
-        section.locationOf("sidc"),
-        fmt::format("the 4th digit of 'sidc' is {}: expected 0 or 1 (unknown), 2 or 3 (friend), 4 "
-                    "(neutral), 5 or 6 (hostile)",
-                    sidc[3]));
-  } else if (platform.side && *platform.side != *side) {
-    context.problems.addError(
-        section.locationOf("side"),
-        fmt::format("'side' is {}, but the 4th digit of 'sidc', {}, is that of {}: remove 'side', "
-                    "or change the digit",
-                    toString(*platform.side), sidc[3], toString(*side)));
-  }
-  platform.side = side;
-  platform.sidc = sidc;
-}
-
-}  // namespace
-
-Platform parsePlatform(const Section& section, ParseContext& context) {
-  Platform platform;
-  platform.name = section.text("name");
-  platform.location = section.location();
-  parseSymbol(section, platform, context);
-  if (section.has("track")) {
-    const Section track = section.section("track");
-    platform.track = trackOf(track, context);
-    platform.outside_track = track.choice<OutsideTrack>("outside");
-    if (!platform.track.empty() && track.has("file"))
-      platform.track_file = context.resolve(track.text("file"));
-    return platform;
-  }
-  const Section position = section.section("position"), attitude = section.section("attitude");
-  TrackPoint point;
-  point.position = positionOf(position);
-  point.position.height_ellipsoid_m = position.optionalNumber("height_ellipsoid_m");
-  platform.track = {point};
-  platform.attitude = {attitude.number("heading_deg"), attitude.number("pitch_deg"),
-                       attitude.number("roll_deg")};
-  return platform;
-}
-
-AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
-  bool readable = true;
-  for (const char* key : {"file", "azimuth_file", "elevation_file"}) {
-    readable = (!section.has(key) || context.addNamed(section, key)) && readable;
-  }
-  if (!readable || !section.sound()) return nullptr;
-  if (section.has("taper_side_lobe_db") && section.choice<TaperKind>("taper") != TaperKind::taylor) {
-    context.problems.addError(section.locationOf("taper_side_lobe_db"),
-                              "'taper_side_lobe_db' is the design level of taper: taylor; 'taper' is " +
-                                  std::string(toString(section.choice<TaperKind>("taper"))));
-  }
-  const std::string description = document::flowText(*section.node(), true);
-  AntennaPtr& antenna = context.files.antennas[description];
-  if (!antenna && context.before != nullptr && context.before->antennas.count(description) != 0) {
-    antenna = context.before->antennas.at(description);
-    context.files.antenna_bands.insert(context.before->antenna_bands.begin(),
-                                       context.before->antenna_bands.end());
-  }
-  try {
-    if (!antenna) antenna = makeConsistentAntenna(section, context);
-  } catch (const Error& error) {
-    const SourceLocation location = error.location().file.empty() ? section.location() : error.location();
-    context.problems.addErrorElsewhere(section.location(), location, error.message());
-  }
-  return antenna;
-}
-
-namespace {
-
-/// Index of the platform that a key names; -1: none, which is a problem unless the key is empty.
-int indexOfPlatform(const Section& section, const char* key, const std::vector<Platform>& platforms,
-                    ParseContext& context) {
-  const std::string wanted = section.text(key);
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < platforms.size(); ++i) {
-    if (platforms[i].name == wanted) return static_cast<int>(i);
-    names.push_back(platforms[i].name);
-  }
-  if (!wanted.empty()) {
-    context.problems.addError(section.locationOf(key), fmt::format("there is no platform '{}'{}", wanted,
-                                                                   document::didYouMean(wanted, names)));
-  }
-  return -1;
-}
-
-}  // namespace
-
-int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
-  return indexOfPlatform(section, "platform", platforms, context);
-}
-
 void parseAntennaNoise(const Section& section, double frequency_hz, const AntennaPtr& antenna,
                        const ScanSpec& scan, ParseContext& context, double& antenna_temperature_k) {
   if (!section.has("antenna_noise")) return;
@@ -526,35 +364,11 @@ void parseAntennaNoise(const Section& section, double frequency_hz, const Antenn
   }
 }
 
-namespace {
-
-/// Index of the platform to which an emitter's antenna turns; -1: a problem.
-int parseVictim(const Section& section, const Emitter& emitter, const std::vector<Platform>& platforms,
-                ParseContext& context) {
-  const Section scan = section.section("scan");
-  const int victim = indexOfPlatform(scan, "victim", platforms, context);
-  if (victim >= 0 && victim == emitter.platform) {
-    context.problems.addError(
-        scan.locationOf("victim"),
-        fmt::format("'victim' is '{}', the platform of '{}' itself", scan.text("victim"), emitter.name));
-  }
-  if (emitter.kind == EmitterKind::radar) {
-    context.problems.addError(
-        scan.locationOf("kind"),
-        fmt::format("'kind' is victim, for jammers and transmitters; '{}' is a radar: track "
-                    "turns it onto its targets",
-                    emitter.name));
-  }
-  return victim;
-}
-
-}  // namespace
-
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
   Emitter emitter;
   emitter.name = section.text("name");
   emitter.location = section.location();
-  emitter.platform = parseCarrier(section, platforms, context);
+  emitter.platform = indexNamedBy(section, "platform", "platform", platforms, context);
   emitter.kind = section.choice<EmitterKind>("kind");
   emitter.enabled = section.optionalBoolean("enabled").value_or(true);
   emitter.frequency_hz = section.number("frequency_hz");

@@ -1,6 +1,8 @@
 /// Parsers of the checked sections of a scenario file.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <map>
 #include <memory>
 #include <optional>
@@ -8,13 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "document/schema_check.h"
 #include "document/section.h"
 #include "document/text_file.h"
 #include "emscape/document/problem.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/emitter.h"
 #include "emscape/scenario/model/platform.h"
-#include "emscape/scenario/model/receiver.h"
 #include "emscape/scenario/model/scenario.h"
 #include "emscape/scenario/model/target.h"
 #include "scenario/file/schema.h"
@@ -50,11 +52,30 @@ struct ParseContext {
 
 /// checkObject() has already reported schema errors; these functions report only semantic ones. The result of
 /// a faulty section is incomplete.
+Region parseRegion(const Section& section, ParseContext& context);
+TerrainSpec parseTerrain(const Section& section, ParseContext& context);
+propagation::Atmosphere parseAtmosphere(const Section& section, ParseContext& context);
+propagation::Ground parseGround(const Section& section);
 Platform parsePlatform(const Section& section, ParseContext& context);
 AntennaPtr parseAntenna(const Section& section, ParseContext& context);  ///< null if faulty
 ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context);
-/// Index of the platform that a section names; -1, and a problem, if there is none.
-int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
+/// Index of the item that a key names; -1, and a problem, if there is none.
+/// @param kind  of the items, for the problem
+template <class Named>
+int indexNamedBy(const Section& section, const char* key, const char* kind, const std::vector<Named>& items,
+                 ParseContext& context) {
+  const std::string wanted = section.text(key);
+  std::vector<std::string> names;
+  for (const Named& item : items) {
+    if (item.name == wanted) return static_cast<int>(names.size());
+    names.push_back(item.name);
+  }
+  if (!wanted.empty()) {  // else the schema's check has reported it
+    context.problems.addError(section.locationOf(key), fmt::format("there is no {} '{}'{}", kind, wanted,
+                                                                   document::didYouMean(wanted, names)));
+  }
+  return -1;
+}
 /// Null without the key, or if it is faulty.
 std::shared_ptr<const propagation::Refractivity> parseRefractivity(const Section& atmosphere,
                                                                    ParseContext& context);

@@ -1,10 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <string_view>
 
 #include "document/csv.h"
 #include "document/schema_check.h"

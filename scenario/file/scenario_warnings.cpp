@@ -9,8 +9,8 @@
 #include "emscape/base/units.h"
 #include "emscape/scenario/model/quantities.h"
 #include "recording/common/ticks.h"
+#include "recording/common/track_recorder.h"
 #include "scenario/file/far_outside.h"
-#include "scenario/file/quantity_needs.h"
 #include "scenario/scan/scan_sampling.h"
 
 namespace emscape::scenario {
@@ -277,23 +277,21 @@ struct TrackLeg {
 
 /// The leg to a point of a track.
 TrackLeg legTo(const std::vector<TrackPoint>& track, std::size_t k) {
-  constexpr double kShortestStep_s = 1e-3;
   const SitePosition &from = track[k - 1].position, &to = track[k].position;
   return {
       geodesicInverse(from.latitude_deg, from.longitude_deg, to.latitude_deg, to.longitude_deg).distance_m,
-      std::max(track[k].t_s - track[k - 1].t_s, kShortestStep_s)};
+      std::max(track[k].t_s - track[k - 1].t_s, interop::kShortestStep_s)};
 }
 
 /// Warns about tracks whose legs are faster than any object.
 void warnOfSpeeds(const Scenario& scenario, const Section& root, ParseContext& context) {
-  constexpr double kFastest_mps = 10e3;
   const std::vector<Section> sections = root.sections("platforms");
   WarningOfItems warning;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const std::vector<TrackPoint>& track = scenario.platforms[i].track;
     for (std::size_t k = 1; k < track.size(); ++k) {
       const auto [leg_m, leg_s] = legTo(track, k);
-      if (leg_m <= kFastest_mps * leg_s) continue;
+      if (leg_m <= interop::kFastest_mps * leg_s) continue;
       const std::string& name = scenario.platforms[i].name;
       warning.add(sections[i].locationOf("track"), name,
                   fmt::format("the track of '{}' moves {:.4g} km from {:g} to {:g} s, at {:.4g} km/s: faster "

@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "emscape/base/error.h"
 #include "scenario/map/point_table.h"
 #include "scenario/map/vector_file.h"
-#include "scenario/terrain/gdal_messages.h"
 #include "scenario/terrain/transformation.h"
 
 namespace emscape::scenario {

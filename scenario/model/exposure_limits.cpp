@@ -1,12 +1,11 @@
-#include "emscape/scenario/model/exposure_limits.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/units.h"
+#include "emscape/scenario/model/quantities.h"
+
 namespace emscape::scenario {
 namespace {
-
-constexpr double kFreeSpace_ohm = 376.730313668;
 
 /// Levels of one group; f is the frequency in MHz.
 struct Levels {
@@ -30,7 +29,8 @@ std::optional<double> referenceLevel_wm2(ExposureGroup group, double frequency_h
   if (f_mhz > 30) return levels.vhf_wm2;
   const double electric_v_m = levels.electric_v_m / std::pow(f_mhz, 0.7);
   const double magnetic_a_m = levels.magnetic_a_m / f_mhz;
-  return std::min(electric_v_m * electric_v_m / kFreeSpace_ohm, magnetic_a_m * magnetic_a_m * kFreeSpace_ohm);
+  return std::min(electric_v_m * electric_v_m / kFreeSpaceImpedance,
+                  magnetic_a_m * magnetic_a_m * kFreeSpaceImpedance);
 }
 
 }  // namespace emscape::scenario

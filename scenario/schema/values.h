@@ -1,9 +1,7 @@
 /// Values that several sections of the scenario format share, with their units and limits.
 #pragma once
 
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "base/geodesy/position_limits.h"
 #include "document/schema.h"

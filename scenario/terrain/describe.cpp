@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "emscape/base/units.h"
 #include "emscape/scenario/terrain/terrain.h"
 #include "scenario/terrain/file_notes.h"
+#include "scenario/terrain/georeference.h"
 #include "scenario/terrain/place.h"
 
 namespace emscape::scenario {
@@ -24,7 +24,7 @@ bool meet(const GeoBox& a, const GeoBox& b) {
 void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
   constexpr long long kMaxPosts = 1LL << 28;
   constexpr int kStrips = 64;
-  const long long rows = file.rows(), columns = file.columns();
+  const long long rows = file.head().rows, columns = file.head().columns;
   const bool is_partial = rows * columns > kMaxPosts;
   const int strips = is_partial ? kStrips : 1;
   bool is_noted = false;
@@ -33,7 +33,7 @@ void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
   const long long rows_of_strip = is_partial ? std::max(1LL, kMaxPosts / columns / kStrips) : rows;
   for (int strip = 0; strip < strips; ++strip) {
     const long long first_row = strip == 0 ? 0 : (rows - rows_of_strip) * strip / (strips - 1);
-    FillValues fills(columns, file.meaning().unit_m);
+    FillValues fills(columns, file.head().meaning.unit_m);
     tally.add(file.read({0, first_row, columns, rows_of_strip}, [&](long long, const float* heights_m) {
       fills.add(heights_m);
       int voids = 0;
@@ -78,24 +78,25 @@ TerrainFileInfo infoOf(const ElevationSource& source, const SourceLocation& loca
   const TerrainFile file(source, location, keys);
   TerrainFileInfo info;
   info.file = source.name();
-  info.vertical_datum = file.meaning().datum_text;
-  info.height_unit = file.meaning().unit;
-  info.format = file.format();
+  info.vertical_datum = file.head().meaning.datum_text;
+  info.height_unit = file.head().meaning.unit;
+  info.format = file.head().format;
   info.crs = file.crs();
   info.box = geographicBoxOf(file);
-  info.columns = file.columns();
-  info.rows = file.rows();
-  info.pixel_is_area = file.isArea();
-  info.notes.insert(info.notes.end(), file.notes().begin(), file.notes().end());
+  info.columns = file.head().columns;
+  info.rows = file.head().rows;
+  info.pixel_is_area = file.georeference().is_area;
+  info.notes.insert(info.notes.end(), file.head().notes.begin(), file.head().notes.end());
   const Assumption assumed = assumptionOf(file);
   if (!assumed.text.empty()) info.warnings.push_back(assumed.text + assumed.effect);
-  info.warnings.insert(info.warnings.end(), file.warnings().begin(), file.warnings().end());
-  const double column = 0.5 * (file.columns() - 1), row = 0.5 * (file.rows() - 1);
-  const PostLattice& lattice = file.lattice();
+  info.warnings.insert(info.warnings.end(), file.head().meaning.warnings.begin(),
+                       file.head().meaning.warnings.end());
+  const double column = 0.5 * (file.head().columns - 1), row = 0.5 * (file.head().rows - 1);
+  const PostLattice& lattice = file.georeference().lattice;
   std::vector<double> x{lattice.x(column - 0.5), lattice.x(column + 0.5), lattice.x(column),
                         lattice.x(column)};
   std::vector<double> y{lattice.y(row), lattice.y(row), lattice.y(row - 0.5), lattice.y(row + 0.5)};
-  file.toGeographic(x, y);
+  file.georeference().toGeographic(x, y);
   if (!std::isfinite(x[2]) || !std::isfinite(y[2]))
     throw Error(ErrorCode::bad_input, "elevation file " + info.file + ": its posts are not on the earth");
   info.post_spacing_lon_deg = std::abs(wrapLongitude_deg(x[1] - x[0]));

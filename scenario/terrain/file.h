@@ -15,6 +15,19 @@
 
 namespace emscape::scenario {
 
+class Georeference;
+
+/// What is known of a file before its heights are read.
+struct TerrainFileHead {
+  std::string name, format;
+  SourceLocation location;
+  TerrainFileKeys keys;
+  std::vector<std::string>
+      notes;              ///< for the user: bands left out, unit converted, positions transformed to WGS84
+  HeightMeaning meaning;  ///< its warnings: what was assumed and may be wrong
+  int columns = 0, rows = 0;
+};
+
 /// Posts are at the centres of the raster's pixels, as GDAL defines them, for pixel-is-area and for
 /// pixel-is-point (GDAL shifts the corners of the latter by half a pixel when it opens them). Not safe to
 /// share between threads.
@@ -27,22 +40,9 @@ class TerrainFile {
   TerrainFile(const ElevationSource& source, const SourceLocation& location, const TerrainFileKeys& keys);
   ~TerrainFile();
 
-  const std::string& name() const;
-  const std::string& format() const;
+  const TerrainFileHead& head() const;
+  const Georeference& georeference() const;
   std::string crs() const;
-  /// Notes for the user: bands left out, unit converted, positions transformed to WGS84.
-  const std::vector<std::string>& notes() const;
-  /// What was assumed and may be wrong.
-  const std::vector<std::string>& warnings() const;
-  const HeightMeaning& meaning() const;
-  const SourceLocation& location() const;
-  const TerrainFileKeys& keys() const;
-
-  const PostLattice& lattice() const;
-  int columns() const;
-  int rows() const;
-  /// True if heights represent areas (the file extends half a post beyond its posts), not points.
-  bool isArea() const;
 
   /// Receives a row of heights (m above the file's datum; NaN for voids); rows are counted from the window's
   /// southern edge.
@@ -55,18 +55,6 @@ class TerrainFile {
 
   /// Frees the memory of a packed file; it is unpacked again if it is read again.
   void release() const;
-
-  /// True: the lattice is of WGS84 longitudes and latitudes (deg). False: of the plane of the file's
-  /// projection.
-  bool isGeographic() const;
-  /// A name that is equal for files whose lattices are in the same plane.
-  const std::string& planeName() const;
-  /// Transforms points of the plane to longitude and latitude (deg) in place; NaN where that fails.
-  void toGeographic(std::vector<double>& x, std::vector<double>& y) const;
-  /// Transforms longitudes and latitudes (deg) to the plane in place; NaN where that fails.
-  void toPlane(std::vector<double>& x, std::vector<double>& y) const;
-  /// The same for points on a line: much faster, error at most a hundredth of a post.
-  void lineToPlane(std::vector<double>& x, std::vector<double>& y) const;
 
  private:
   struct Impl;

@@ -39,7 +39,7 @@ std::string fillText(const FillValues::Found& fill) {
 }
 
 Assumption assumptionOf(const TerrainFile& file) {
-  const HeightMeaning& meaning = file.meaning();
+  const HeightMeaning& meaning = file.head().meaning;
   const bool is_datum_assumed =
       meaning.origin == DatumOrigin::assumed && meaning.datum_text == "EGM96 (assumed)";
   if (!is_datum_assumed) {

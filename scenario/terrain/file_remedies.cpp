@@ -13,7 +13,6 @@
 #include <istream>
 #include <vector>
 
-#include "base/geodesy/gdal_file.h"
 #include "base/text/shell_word.h"
 #include "document/text_lines.h"
 #include "emscape/base/units.h"

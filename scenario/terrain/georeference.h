@@ -23,16 +23,18 @@ class Georeference {
 
   PostLattice lattice;
   bool north_first = true;  ///< order of the raster's rows
-  bool is_area = true;
+  bool is_area = true;      ///< the raster extends half a post beyond its posts
   /// Rows or columns are not parallel to the axes of the system: the plane is that of the pixels.
   bool turned = false;
   bool is_geographic = false;  ///< the plane is of WGS84 longitudes and latitudes (deg)
   std::string plane_name;      ///< equal for rasters whose lattices are in the same plane
 
   OGRSpatialReferenceH system() const { return system_.get(); }
-  /// See TerrainFile.
+  /// Transforms points of the plane to longitude and latitude (deg) in place; NaN where that fails.
   void toGeographic(std::vector<double>& x, std::vector<double>& y) const;
+  /// Transforms longitudes and latitudes (deg) to the plane in place; NaN where that fails.
   void toPlane(std::vector<double>& x, std::vector<double>& y) const;
+  /// The same for points on a line: much faster, error at most a hundredth of a post.
   void lineToPlane(std::vector<double>& x, std::vector<double>& y) const;
 
  private:

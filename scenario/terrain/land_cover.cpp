@@ -8,6 +8,7 @@
 #include <map>
 
 #include "emscape/base/units.h"
+#include "scenario/terrain/georeference.h"
 #include "scenario/terrain/place.h"
 #include "scenario/terrain/view.h"
 
@@ -25,12 +26,12 @@ struct CoverCellSize {
   double latitude_deg = 0, longitude_deg = 0;
 };
 CoverCellSize cellSizeOf(const TerrainFile& file) {
-  const PostLattice& lattice = file.lattice();
-  const double column = 0.5 * (file.columns() - 1), row = 0.5 * (file.rows() - 1);
+  const PostLattice& lattice = file.georeference().lattice;
+  const double column = 0.5 * (file.head().columns - 1), row = 0.5 * (file.head().rows - 1);
   std::vector<double> x{lattice.x(column - 0.5), lattice.x(column + 0.5), lattice.x(column),
                         lattice.x(column)};
   std::vector<double> y{lattice.y(row), lattice.y(row), lattice.y(row - 0.5), lattice.y(row + 0.5)};
-  file.toGeographic(x, y);
+  file.georeference().toGeographic(x, y);
   return {std::hypot(y[3] - y[2], y[1] - y[0]),
           std::hypot(wrapLongitude_deg(x[1] - x[0]), wrapLongitude_deg(x[3] - x[2]))};
 }
@@ -127,7 +128,7 @@ void LandCover::Impl::placeCells(const GeoBox& box) {
   size.longitude_deg *= thinning;
   // The cells of the first file, if it has longitudes and latitudes.
   const PostLattice& lattice = tiles.front().lattice;
-  const bool is_aligned = tiles.front().file->isGeographic();
+  const bool is_aligned = tiles.front().file->georeference().is_geographic;
   const double x0 = is_aligned ? lattice.x(-0.5) : box.west_deg;
   const double y0 = is_aligned ? lattice.y(-0.5) : box.south_deg;
   const double west = std::floor((box.west_deg - x0) / size.longitude_deg);
@@ -154,7 +155,7 @@ void LandCover::Impl::fill(const RasterTile& tile, const std::vector<std::uint8_
       x[column] = radToDeg(view.west_rad + (column + 0.5) / view.cells_per_rad_lon);
       y[column] = std::clamp(radToDeg(view.south_rad + (row + 0.5) / view.cells_per_rad_lat), -90.0, 90.0);
     }
-    if (!tile.file->isGeographic()) tile.file->lineToPlane(x, y);
+    if (!tile.file->georeference().is_geographic) tile.file->georeference().lineToPlane(x, y);
     std::uint8_t* const to = cells.data() + static_cast<std::size_t>(row) * view.columns;
     for (int column = 0; column < view.columns; ++column) {
       if (to[column] != LandCoverView::kNoClass) continue;

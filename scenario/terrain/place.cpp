@@ -7,6 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "scenario/terrain/georeference.h"
 
 namespace emscape::scenario {
 namespace {
@@ -54,10 +55,10 @@ PlaneBox extentOf(const PostLattice& lattice, int columns, int rows, bool is_are
 
 /// The longitudes and latitudes of a rectangle in a file's plane.
 GeoBox geographicBox(const TerrainFile& file, const PlaneBox& box) {
-  if (file.isGeographic()) return {box.y_min, box.y_max, box.x_min, box.x_max};
+  if (file.georeference().is_geographic) return {box.y_min, box.y_max, box.x_min, box.x_max};
   std::vector<double> x, y;
   scatter(box, x, y);
-  file.toGeographic(x, y);
+  file.georeference().toGeographic(x, y);
   const auto known =
       std::find_if(x.begin(), x.end(), [](double longitude) { return !std::isnan(longitude); });
   if (known == x.end()) return {1.0, -1.0, 1.0, -1.0};
@@ -68,7 +69,7 @@ GeoBox geographicBox(const TerrainFile& file, const PlaneBox& box) {
   // If a pole is inside the rectangle, the box has all longitudes.
   for (double pole_deg : {-90.0, 90.0}) {
     std::vector<double> pole_x{0.0}, pole_y{pole_deg};
-    file.toPlane(pole_x, pole_y);
+    file.georeference().toPlane(pole_x, pole_y);
     if (!(pole_x[0] >= box.x_min && pole_x[0] <= box.x_max && pole_y[0] >= box.y_min &&
           pole_y[0] <= box.y_max))
       continue;
@@ -145,7 +146,7 @@ void requirePosts(const TerrainSheet& sheet, long long columns, long long rows) 
               fmt::format("elevation file {}: {} x {} of its posts take {} x {} posts at latitudes and "
                           "longitudes, more than {:.0f} for each; bring it to a geographic coordinate system "
                           "with square posts (gdalwarp)",
-                          sheet.file->name(), sheet.columns, sheet.rows, columns, rows, kMaxForEach));
+                          sheet.file->head().name, sheet.columns, sheet.rows, columns, rows, kMaxForEach));
 }
 
 TerrainSheet resample(const TerrainSheet& sheet, const GeoBox& part) {
@@ -163,7 +164,7 @@ TerrainSheet resample(const TerrainSheet& sheet, const GeoBox& part) {
       x[static_cast<std::size_t>(column - 1)] = lattice.x(column);
       y[static_cast<std::size_t>(column - 1)] = std::clamp(lattice.y(row), -90.0, 90.0);
     }
-    sheet.file->lineToPlane(x, y);
+    sheet.file->georeference().lineToPlane(x, y);
     for (int column = 1; column < result.columns - 1; ++column) {
       double u = sheet.lattice.column(x[static_cast<std::size_t>(column - 1)]);
       double v = sheet.lattice.row(y[static_cast<std::size_t>(column - 1)]);
@@ -184,20 +185,21 @@ TerrainSheet resample(const TerrainSheet& sheet, const GeoBox& part) {
 }  // namespace
 
 GeoBox geographicBoxOf(const TerrainFile& file) {
-  return geographicBox(file, extentOf(file.lattice(), file.columns(), file.rows(), file.isArea()));
+  return geographicBox(file, extentOf(file.georeference().lattice, file.head().columns, file.head().rows,
+                                      file.georeference().is_area));
 }
 
 std::vector<RasterTile> tilesWithin(const TerrainFilePtr& file, const GeoBox& box) {
   std::vector<RasterTile> tiles;
-  const PostLattice& lattice = file->lattice();
+  const PostLattice& lattice = file->georeference().lattice;
   const GeoBox area = geographicBoxOf(*file);
-  if (file->isGeographic()) {
+  if (file->georeference().is_geographic) {
     // Interpolation at the box's edge needs the post outside it.
     for (const auto& [part, turns] : overlaps(box, area, lattice.step_y, lattice.step_x)) {
       PostLattice moved = lattice;
       moved.x0 += 360.0 * turns;
       const PostWindow window = windowAbout({part.west_deg, part.south_deg, part.east_deg, part.north_deg},
-                                            moved, file->columns(), file->rows());
+                                            moved, file->head().columns, file->head().rows);
       if (!window.empty()) tiles.push_back({file, moved, window});
     }
     return tiles;
@@ -205,8 +207,8 @@ std::vector<RasterTile> tilesWithin(const TerrainFilePtr& file, const GeoBox& bo
   for (const auto& [part, turns] : overlaps(box, area, 0.0, 0.0)) {
     std::vector<double> x, y;
     scatter({part.west_deg, part.south_deg, part.east_deg, part.north_deg}, x, y);
-    file->toPlane(x, y);
-    const PostWindow window = windowAbout(boundsOf(x, y), lattice, file->columns(), file->rows());
+    file->georeference().toPlane(x, y);
+    const PostWindow window = windowAbout(boundsOf(x, y), lattice, file->head().columns, file->head().rows);
     if (!window.empty()) tiles.push_back({file, lattice, window});
   }
   return tiles;

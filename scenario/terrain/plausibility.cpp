@@ -19,10 +19,11 @@ constexpr double kMaxShareBeyond = 0.01;
 /// Other units in which the heights would be on land, the first with its key.
 std::string otherUnits(const TerrainFile& file, const HeightTally& tally) {
   constexpr double kLowestLand_m = -500;
-  if (!file.meaning().is_unit_assumed && !file.keys().height_unit) return "";  // a key would contradict it
+  if (!file.head().meaning.is_unit_assumed && !file.head().keys.height_unit)
+    return "";  // a key would contradict it
   std::string names;
   for (const HeightUnit unit : {HeightUnit::cm, HeightUnit::dm, HeightUnit::ft}) {
-    const double factor = metresOf(unit) / file.meaning().unit_m;
+    const double factor = metresOf(unit) / file.head().meaning.unit_m;
     if (factor >= 1 || tally.lowest_m() * factor < kLowestLand_m ||
         tally.highest_m() * factor > kHighestOnEarth_m)
       continue;
@@ -50,7 +51,7 @@ void addBeyond(const TerrainFile& file, const HeightTally& tally, std::vector<Im
       kHighestOnEarth_m, tally.lowest_m(), tally.highest_m());
   const bool is_few =
       static_cast<double>(tally.beyond()) <= kMaxShareBeyond * static_cast<double>(tally.posts());
-  if (is_few || file.keys().implausible == ImplausibleHeights::as_void) {
+  if (is_few || file.head().keys.implausible == ImplausibleHeights::as_void) {
     all.push_back({false, what + "; void"});
     return;
   }
@@ -147,7 +148,7 @@ std::vector<Implausibility> implausibilitiesOf(const TerrainFile& file, const He
                                                const FillValues::Result& fills) {
   std::vector<Implausibility> all;
   if (tally.looksSwapped()) {
-    const std::string remedy = file.keys().swap_bytes
+    const std::string remedy = file.head().keys.swap_bytes
                                    ? "leave out `swap_bytes` of the file"
                                    : "`swap_bytes: true` of the file in the scenario reads them so";
     all.push_back({true, fmt::format("its heights jump from post to post, and become smooth if the two bytes "
@@ -158,7 +159,7 @@ std::vector<Implausibility> implausibilitiesOf(const TerrainFile& file, const He
   if (tally.looksSwappedReal()) {
     all.push_back({true, fmt::format("its real numbers are nearly 0, below 1e-20, as the other byte order "
                                      "makes of heights; {}",
-                                     file.keys().swap_bytes
+                                     file.head().keys.swap_bytes
                                          ? "leave out `swap_bytes` of the file"
                                          : "`swap_bytes: true` of the file in the scenario reads them so")});
     return all;

@@ -1,7 +1,6 @@
 /// Heights that cannot be right: not on earth, or of 16 bits in the other byte order.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>

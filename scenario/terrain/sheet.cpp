@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "emscape/base/units.h"
+#include "scenario/terrain/georeference.h"
 
 namespace emscape::scenario {
 namespace {
@@ -45,9 +46,10 @@ bool coincide(double first, double last, int count) {
 }
 
 bool fits(const RasterTile& tile, const LatticeGroup& group) {
-  const int columns = tile.file->columns(), rows = tile.file->rows();
+  const int columns = tile.file->head().columns, rows = tile.file->head().rows;
   const PostLattice& own = tile.lattice;
-  return tile.file->planeName() == group.plane && tile.file->meaning().datum == group.datum &&
+  return tile.file->georeference().plane_name == group.plane &&
+         tile.file->head().meaning.datum == group.datum &&
          coincide(group.lattice.column(own.x(0)), group.lattice.column(own.x(columns - 1)), columns) &&
          coincide(group.lattice.row(own.y(0)), group.lattice.row(own.y(rows - 1)), rows);
 }
@@ -58,7 +60,8 @@ std::vector<LatticeGroup> groupByLattice(const std::vector<RasterTile>& tiles) {
     auto group = std::find_if(groups.begin(), groups.end(),
                               [&](const LatticeGroup& candidate) { return fits(tile, candidate); });
     if (group == groups.end()) {
-      groups.push_back({tile.lattice, tile.file->planeName(), tile.file->meaning().datum, {}});
+      groups.push_back(
+          {tile.lattice, tile.file->georeference().plane_name, tile.file->head().meaning.datum, {}});
       group = groups.end() - 1;
     }
     const PostWindow& window = tile.window;
@@ -109,13 +112,13 @@ void measureSpacing(TerrainSheet& sheet) {
   const int column = sheet.columns / 2, row = sheet.rows / 2;
   std::vector<double> x{sheet.lattice.x(column), sheet.lattice.x(column - 1), sheet.lattice.x(column)};
   std::vector<double> y{sheet.lattice.y(row), sheet.lattice.y(row), sheet.lattice.y(row - 1)};
-  sheet.file->toGeographic(x, y);
+  sheet.file->georeference().toGeographic(x, y);
   const double across_m = geodesicInverse(y[0], x[0], y[1], x[1]).distance_m;
   const double along_m = geodesicInverse(y[0], x[0], y[2], x[2]).distance_m;
   sheet.spacing_m = std::sqrt(across_m * along_m);
   if (!(sheet.spacing_m > 0.0)) {
     throw Error(ErrorCode::bad_input,
-                "elevation file " + sheet.file->name() + ": its posts are not on the earth");
+                "elevation file " + sheet.file->head().name + ": its posts are not on the earth");
   }
   sheet.finest_m = std::max(std::min(across_m, along_m), 0.5 * std::max(across_m, along_m));
 }
@@ -152,10 +155,10 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
                      patch.row_end - patch.row_begin + 2);
   for (const PlacedTile& placed : patch.tiles) {
     const TerrainFile& file = *placed.tile->file;
-    sheet.is_area = sheet.is_area || file.isArea();
+    sheet.is_area = sheet.is_area || file.georeference().is_area;
     const int first_column = static_cast<int>(placed.column_begin - patch.column_begin) + 1;
     const int first_row = static_cast<int>(placed.row_begin - patch.row_begin) + 1;
-    FillValues fills(placed.tile->window.columns, file.meaning().unit_m);
+    FillValues fills(placed.tile->window.columns, file.head().meaning.unit_m);
     CommonPosts overlap;
     const HeightTally tally = file.read(placed.tile->window, [&](long long row, const float* heights_m) {
       fills.add(heights_m);
@@ -173,8 +176,8 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
     const FillValues::Result found = fills.result();
     for (const Implausibility& remark : implausibilitiesOf(file, tally, found)) {
       if (remark.is_error)
-        throw Error(ErrorCode::bad_input, file.location(),
-                    "elevation file " + file.name() + ": " + remark.text);
+        throw Error(ErrorCode::bad_input, file.head().location,
+                    "elevation file " + file.head().name + ": " + remark.text);
       sheet.remarks.push_back({placed.tile->file, remark.text});
     }
     if (const std::string text =
@@ -281,7 +284,7 @@ TerrainSheet::TerrainSheet(const TerrainFilePtr& of_file, const PostLattice& of_
     : file(of_file), lattice(of_lattice) {
   if (with_columns > kMaxSheetPosts / with_rows) {
     throw Error(ErrorCode::bad_input,
-                "elevation file " + file->name() + ": the region takes " + std::to_string(with_columns) +
+                "elevation file " + file->head().name + ": the region takes " + std::to_string(with_columns) +
                     " x " + std::to_string(with_rows) + " posts of its spacing, more than " +
                     std::to_string(kMaxSheetPosts) + "; use a coarser file or a smaller region");
   }
@@ -291,8 +294,8 @@ TerrainSheet::TerrainSheet(const TerrainFilePtr& of_file, const PostLattice& of_
   last_column = columns - 2;
   last_row = rows - 2;
   const std::size_t posts = static_cast<std::size_t>(with_columns * with_rows);
-  requireMemory({"elevation file " + file->name() + ": the region's " + std::to_string(with_columns) + " x " +
-                     std::to_string(with_rows) + " posts",
+  requireMemory({"elevation file " + file->head().name + ": the region's " + std::to_string(with_columns) +
+                     " x " + std::to_string(with_rows) + " posts",
                  posts * (sizeof(float) + sizeof(PostKind)), "a coarser file or a smaller region takes less"},
                 {});
   heights_m.assign(posts, kNoHeight);

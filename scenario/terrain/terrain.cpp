@@ -18,6 +18,7 @@
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 #include "scenario/terrain/file_notes.h"
+#include "scenario/terrain/georeference.h"
 #include "scenario/terrain/place.h"
 #include "scenario/terrain/view.h"
 
@@ -44,7 +45,7 @@ const GeoBox& checked(const GeoBox& box) {
 /// Heights above a datum become heights above mean sea level (EGM96).
 /// @param warnings  receives that a grid is missing, where the scenario does not ask for it
 void toMeanSeaLevel(TerrainSheet& sheet, FileNotes& warnings) {
-  const HeightMeaning& meaning = sheet.file->meaning();
+  const HeightMeaning& meaning = sheet.file->head().meaning;
   const VerticalDatum datum = meaning.datum;
   if (datum == VerticalDatum::egm96 || datum == VerticalDatum::navd88) return;
   std::optional<GeoidGrid> egm2008;
@@ -54,9 +55,9 @@ void toMeanSeaLevel(TerrainSheet& sheet, FileNotes& warnings) {
                              sheet.lattice.x(sheet.columns - 1)});
     } catch (const Error& error) {
       if (meaning.origin == DatumOrigin::key)
-        throw Error(error.code(), sheet.file->location(), error.message());
+        throw Error(error.code(), sheet.file->head().location, error.message());
       warnings.add(
-          sheet.file->name(),
+          sheet.file->head().name,
           "its heights are above EGM2008 and are taken as above EGM96, since the grid that converts them is "
           "missing: " +
               error.message());
@@ -114,10 +115,11 @@ void addFile(const ElevationSource& source, const SourceLocation& location, cons
   all.boxes.push_back(geographicBoxOf(*file));
   std::vector<RasterTile> tiles = tilesWithin(file, box);
   if (tiles.empty()) return;
-  for (const std::string& note : file->notes()) all.notes.add(file->name(), note);
+  for (const std::string& note : file->head().notes) all.notes.add(file->head().name, note);
   const Assumption assumed = assumptionOf(*file);
-  if (!assumed.text.empty()) all.warnings.add(file->name(), assumed.text, assumed.effect);
-  for (const std::string& warning : file->warnings()) all.warnings.add(file->name(), warning);
+  if (!assumed.text.empty()) all.warnings.add(file->head().name, assumed.text, assumed.effect);
+  for (const std::string& warning : file->head().meaning.warnings)
+    all.warnings.add(file->head().name, warning);
   for (RasterTile& tile : tiles) all.tiles.push_back(std::move(tile));
 }
 
@@ -186,12 +188,12 @@ std::vector<TerrainSheet> sheetsWithin(FilesWithin& files, const GeoBox& box) {
   std::vector<TerrainSheet> sheets;
   for (TerrainSheet& sheet : readSheets(files.tiles)) {
     for (const TerrainSheet::Fill& fill : sheet.fills)
-      files.warnings.add(fill.file->name(), fillText(fill.value));
+      files.warnings.add(fill.file->head().name, fillText(fill.value));
     for (const TerrainSheet::Remark& remark : sheet.remarks)
-      files.warnings.add(remark.file->name(), remark.text);
+      files.warnings.add(remark.file->head().name, remark.text);
     for (const TerrainFilePtr& file : sheet.partly_searched)
-      files.warnings.add(file->name(), kPartlySearched);
-    if (sheet.file->isGeographic()) {
+      files.warnings.add(file->head().name, kPartlySearched);
+    if (sheet.file->georeference().is_geographic) {
       sheets.push_back(std::move(sheet));
     } else {
       for (TerrainSheet& brought : toGeographicSheets(std::move(sheet), box))

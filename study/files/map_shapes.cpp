@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "emscape/base/error.h"
 #include "study/maps/gdal_support.h"
 #include "study/picture/map_colors.h"
 

@@ -1,6 +1,5 @@
 #include "study/maps/causes.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 

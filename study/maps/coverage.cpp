@@ -20,7 +20,6 @@
 namespace emscape::study {
 namespace {
 
-using emfield::FieldSolver;
 using emfield::HeightReference;
 using scenario::Quantity;
 

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "base/geodesy/gdal.h"
 #include "emscape/study/maps/map_grid.h"

@@ -1,7 +1,6 @@
 /// The maps of a scenario's products at the heights of one reference.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>

@@ -1,7 +1,6 @@
 /// Emitters and moving platforms of a scenario, for files of maps.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 #include <optional>
 #include <set>
@@ -10,7 +9,6 @@
 
 #include "base/files/folder.h"
 #include "base/files/unfinished_file.h"
-#include "emscape/base/error.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/format/file.h"
 #include "study/files/geotiff.h"

@@ -4,7 +4,6 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <string>
 
 #include "emscape/base/enum_names.h"
 #include "emscape/emfield/solver/field_solver.h"

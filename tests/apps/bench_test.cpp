@@ -36,8 +36,7 @@ json bench(const Arguments& arguments) {
   Arguments with_json{"bench"};
   with_json.insert(with_json.end(), arguments.begin(), arguments.end());
   with_json.insert(with_json.end(), {"--json", "--quiet"});
-  const ProgramResult result = run(with_json);
-  EXPECT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell(with_json);
   EXPECT_EQ(result.err, "");
   return json::parse(result.out);
 }
@@ -96,10 +95,8 @@ TEST(Bench, CoverageTimesTheFirstHeightAndEachFurtherOne) {
 }
 
 TEST(Bench, JsonOfFieldHasContractKeys) {
-  const ProgramResult result =
-      run({"bench", "field", shippedScenario("quick.yaml"), "--repeats", "1", "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json bench = json::parse(result.out);
+  const json bench =
+      json::parse(runWell({"bench", "field", shippedScenario("quick.yaml"), "--repeats", "1", "--json"}).out);
   EXPECT_EQ(bench.at("device"), deviceName());
   EXPECT_EQ(bench.at("grid"), json({40, 40, 20}));
   EXPECT_EQ(bench.at("emitters"), 2);
@@ -111,9 +108,8 @@ TEST(Bench, JsonOfFieldHasContractKeys) {
 }
 
 TEST(Bench, GlobalOptionsBeforeTheSubcommandReachTheProgram) {
-  const ProgramResult result = run({"--json", "--quiet", "--threads", "1", "bench", "field",
-                                    shippedScenario("quick.yaml"), "--repeats", "1"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell({"--json", "--quiet", "--threads", "1", "bench", "field",
+                                        shippedScenario("quick.yaml"), "--repeats", "1"});
   EXPECT_TRUE(json::parse(result.out).contains("stages_ms"));
   EXPECT_EQ(result.err, "");
 }
@@ -247,8 +243,7 @@ TEST(Bench, ScanOfEngineSizeIsRead) {
 
 TEST(Bench, TableStatesRestorationOfEachPattern) {
   const ProgramResult result =
-      run({"bench", "reconstruction", shippedScenario("quick.yaml"), "--size", "32x24", "--frames", "1"});
-  EXPECT_EQ(result.status, 0) << result.err;
+      runWell({"bench", "reconstruction", shippedScenario("quick.yaml"), "--size", "32x24", "--frames", "1"});
   EXPECT_THAT(result.out, HasSubstr("checkerboard"));
   EXPECT_THAT(result.out, HasSubstr("equal"));
 }

@@ -26,9 +26,7 @@ TEST(Check, PassesAFolderWhoseFiguresAreMet) {
   put(folder, "geoid/check_points.csv", kGoodGeoid);
   put(folder, "pe/ntia_lfmf_check.csv", "");
   put(folder, "notes/todo.txt", "");
-  const ProgramResult result = run({"check", folder.path().string(), "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell({"check", folder.path().string(), "--json"}).out);
   EXPECT_EQ(report["pass"], true);
   ASSERT_EQ(report["datasets"].size(), 1u);
   const json& geoid = report["datasets"][0];
@@ -91,9 +89,7 @@ TEST(Check, TakesTheFolderOfOneFamily) {
       "frequency_hz,sigma_h_m,grazing_deg,ament,miller_brown\n3e9,0.031875,0.5,0.999388,0.999389\n");
   put(folder, "pe/README.md", "");
   put(folder, "pe/more.csv", "");
-  const ProgramResult result = run({"check", (folder.path() / "pe").string() + "/", "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell({"check", (folder.path() / "pe").string() + "/", "--json"}).out);
   ASSERT_EQ(report["datasets"].size(), 1u);
   EXPECT_EQ(report["datasets"][0]["name"], "pe/roughness.csv");
   EXPECT_EQ(report["unknown"], json({"pe/more.csv"}));
@@ -116,11 +112,7 @@ TEST(Check, ComparesATableOfMeasuredPaths) {
       "db=pl",
       "--where",
       "site=a"};
-  const auto with = [&](std::vector<std::string> more) {
-    std::vector<std::string> all = arguments;
-    all.insert(all.end(), more.begin(), more.end());
-    return run(all);
-  };
+  const auto with = [&](const Arguments& more) { return run(joined(arguments, more)); };
   const ProgramResult text = with({});
   ASSERT_EQ(text.status, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("losses.csv: 2 of 3 rows, 2 paths of 3.4"));
@@ -135,16 +127,13 @@ TEST(Check, ComparesATableOfMeasuredPaths) {
   EXPECT_EQ(report["paths"][0]["measured_db"], 130);
   EXPECT_EQ(report["paths"][1]["line"], 3);
   EXPECT_EQ(with({"--where", "lat>80"}).status, 3);
-  const ProgramResult of_folder = run({"check", folder.path().string(), "--model", "itm"});
-  EXPECT_EQ(of_folder.status, 2);
-  EXPECT_THAT(of_folder.err, HasSubstr("options of measured paths are given"));
+  EXPECT_THAT(errorOfRun({"check", folder.path().string(), "--model", "itm"}, 2),
+              HasSubstr("options of measured paths are given"));
 }
 
 TEST(Check, RefusesAFolderWithoutDatasets) {
   const TemporaryFolder folder;
-  const ProgramResult result = run({"check", folder.path().string()});
-  EXPECT_EQ(result.status, 3);
-  EXPECT_THAT(result.err, HasSubstr("has no known dataset"));
+  EXPECT_THAT(errorOfRun({"check", folder.path().string()}, 3), HasSubstr("has no known dataset"));
 }
 
 }  // namespace

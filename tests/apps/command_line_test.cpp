@@ -34,28 +34,25 @@ TEST(CommandLine, HelpAndVersionAreNoErrors) {
 
 TEST(CommandLine, NumbersAreFinite) {
   for (const std::string number : {"nan", "inf", "-inf"}) {
-    const ProgramResult result =
-        run({"vertical", shippedScenario("jacksboro.yaml"), "--emitter", "search radar", "--azimuth", "30",
-             "-o", "out.png", "--threshold", number});
-    EXPECT_EQ(result.status, kUsage);
-    EXPECT_THAT(result.err, HasSubstr("--threshold: '" + number + "' is not a number"));
+    EXPECT_THAT(errorOfRun({"vertical", shippedScenario("jacksboro.yaml"), "--emitter", "search radar",
+                            "--azimuth", "30", "-o", "out.png", "--threshold", number},
+                           kUsage),
+                HasSubstr("--threshold: '" + number + "' is not a number"));
   }
 }
 
 TEST(CommandLine, LeadingZerosOfWholeNumbersAreIgnored) {
   for (const std::string frames : {"010", "008"}) {
-    const ProgramResult result = run({"bench", "render", shippedScenario("quick.yaml"), "--size", "16x16",
-                                      "--frames", frames, "--json", "--quiet"});
-    ASSERT_EQ(result.status, 0) << result.err;
+    const ProgramResult result = runWell({"bench", "render", shippedScenario("quick.yaml"), "--size", "16x16",
+                                          "--frames", frames, "--json", "--quiet"});
     EXPECT_EQ(json::parse(result.out)["frames"], std::stoi(frames));
   }
 }
 
 TEST(CommandLine, WholeNumbersAreDecimal) {
   for (const std::string frames : {"0x10", "-0X1"}) {
-    const ProgramResult result = run({"bench", "render", shippedScenario("quick.yaml"), "--frames", frames});
-    EXPECT_EQ(result.status, kUsage);
-    EXPECT_THAT(result.err, HasSubstr("--frames: '" + frames + "' is not a decimal number\n"));
+    EXPECT_THAT(errorOfRun({"bench", "render", shippedScenario("quick.yaml"), "--frames", frames}, kUsage),
+                HasSubstr("--frames: '" + frames + "' is not a decimal number\n"));
   }
 }
 
@@ -69,11 +66,7 @@ TEST(CommandLine, UnexpectedWordsAreNamedInTheirOrder) {
 
 TEST(CommandLine, RefusedValuesAreReportedWithAllowedOnes) {
   const auto errorOf = [](const Arguments& more) {
-    Arguments arguments{"render", shippedScenario("quick.yaml"), "-o", "out.png"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, kUsage);
-    return result.err;
+    return errorOfRun(joined({"render", shippedScenario("quick.yaml"), "-o", "out.png"}, more), kUsage);
   };
   EXPECT_THAT(errorOf({"--step", "0"}),
               StartsWith("emscape: error: --step: '0' must be a number from 0.05 to 10\n"));
@@ -109,11 +102,7 @@ TEST(CommandLine, AVeryLongFileNameGivesAReadableError) {
 
 TEST(CommandLine, AnOptionWithoutItsValueIsNamed) {
   const auto errorOf = [](const Arguments& more) {
-    Arguments arguments{"simulate", shippedScenario("quick.yaml"), "-o", "out"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, kUsage);
-    return result.err;
+    return errorOfRun(joined({"simulate", shippedScenario("quick.yaml"), "-o", "out"}, more), kUsage);
   };
   EXPECT_THAT(errorOf({"--mesh", "--times", "0"}),
               HasSubstr("--mesh needs a value, but '--times' follows\n"));
@@ -297,10 +286,10 @@ TEST(CommandLine, MissingInputIsNamed) {
 
 TEST(CommandLine, UnreachedIsoValueIsReportedWithRange) {
   const TemporaryFolder folder;
-  const ProgramResult result = run({"render", shippedScenario("quick.yaml"), "-o", folder / "x.png", "--size",
-                                    "64x48", "--mode", "iso", "--iso-value", "999"});
-  EXPECT_EQ(result.status, kBadInput);
-  EXPECT_THAT(result.err, HasSubstr("iso value 999 dBW/m2: power_density_dbwm2 ranges from "));
+  EXPECT_THAT(errorOfRun({"render", shippedScenario("quick.yaml"), "-o", folder / "x.png", "--size", "64x48",
+                          "--mode", "iso", "--iso-value", "999"},
+                         kBadInput),
+              HasSubstr("iso value 999 dBW/m2: power_density_dbwm2 ranges from "));
   EXPECT_TRUE(folder.files().empty());
 }
 
@@ -317,15 +306,13 @@ TEST(CommandLine, JsonIsTheOnlyStandardOutput) {
   };
   for (Arguments arguments : commands) {
     arguments.emplace_back("--json");
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 0) << result.err;
+    const ProgramResult result = runWell(arguments);
     EXPECT_TRUE(json::accept(result.out)) << testing::PrintToString(arguments) << result.out;
   }
 }
 
 TEST(CommandLine, GlobalOptionsMayPrecedeTheSubcommand) {
-  const ProgramResult result = run({"--json", "validate", shippedScenario("quick.yaml")});
-  EXPECT_EQ(result.status, 0);
+  const ProgramResult result = runWell({"--json", "validate", shippedScenario("quick.yaml")});
   EXPECT_EQ(json::parse(result.out).at("ok"), true);
 }
 
@@ -347,8 +334,7 @@ TEST(CommandLine, ErrorOfMissingTerrainNamesTheOption) {
   const ProgramResult refused = run({"validate", folder / "wide.yaml"});
   EXPECT_EQ(refused.status, 3);
   EXPECT_THAT(refused.out, HasSubstr("accept only with --allow-missing-terrain"));
-  const ProgramResult allowed = run({"validate", folder / "wide.yaml", "--allow-missing-terrain"});
-  EXPECT_EQ(allowed.status, 0) << allowed.out;
+  const ProgramResult allowed = runWell({"validate", folder / "wide.yaml", "--allow-missing-terrain"});
   EXPECT_THAT(allowed.out, HasSubstr("warning: the elevation files leave"));
 }
 

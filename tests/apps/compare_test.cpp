@@ -17,22 +17,18 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 Arguments compare(const std::string& folder, const Arguments& more) {
-  Arguments arguments{"compare",   shippedScenario("jacksboro.yaml"),
-                      "-o",        folder,
-                      "--cell",    "500",
-                      "--times",   "80",
-                      "--heights", "agl:100"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"compare", shippedScenario("jacksboro.yaml"), "-o", folder, "--cell", "500", "--times", "80",
+                 "--heights", "agl:100"},
+                more);
 }
 
 TEST(Compare, WritesMapsAReportAndAVolume) {
   const TemporaryFolder folder;
-  const ProgramResult result = run(
-      compare(folder / "out", {"--set-b", "emitters.jammer.power_w=1", "--set", "region.dims=[20, 20, 10]",
-                               "--volume", folder / "difference.vti", "--json", "--quiet"}));
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report =
+      json::parse(runWell(compare(folder / "out", {"--set-b", "emitters.jammer.power_w=1", "--set",
+                                                   "region.dims=[20, 20, 10]", "--volume",
+                                                   folder / "difference.vti", "--json", "--quiet"}))
+                      .out);
   EXPECT_EQ(report, json::parse(readFile(folder / "out/report.json")));
   for (const char* key : {"a", "b", "comparison", "changed_areas", "maps", "warnings"})
     EXPECT_TRUE(report.contains(key)) << key;
@@ -54,8 +50,7 @@ TEST(Compare, SLOW_TwoRunsWriteTheSameBytes) {
   const TemporaryFolder first, second;
   for (const TemporaryFolder* folder : {&first, &second}) {
     const ProgramResult result =
-        run(compare(*folder / "out", {"--set-b", "emitters.jammer.power_w=1", "--format", "png"}));
-    ASSERT_EQ(result.status, 0) << result.err;
+        runWell(compare(*folder / "out", {"--set-b", "emitters.jammer.power_w=1", "--format", "png"}));
     EXPECT_THAT(result.out, StartsWith("B (A with emitters.jammer.power_w=1) against A (jacksboro): "));
   }
   ASSERT_EQ(first.files(), second.files());
@@ -66,9 +61,7 @@ TEST(Compare, SLOW_TwoRunsWriteTheSameBytes) {
 TEST(Compare, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const auto errorOf = [&](const Arguments& more, int status) {
-    const ProgramResult result = run(compare(folder / "out", more));
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
+    return errorOfRun(compare(folder / "out", more), status);
   };
   EXPECT_THAT(errorOf({}, 2), HasSubstr("give a second scenario, or --set-b"));
   EXPECT_THAT(errorOf({"--set-b", "power"}, 2), HasSubstr("--set-b"));
@@ -92,8 +85,7 @@ void cover(const std::string& folder, const Arguments& more) {
     arguments.insert(arguments.end(), {usual[n], usual[n + 1]});
   }
   arguments.insert(arguments.end(), more.begin(), more.end());
-  const ProgramResult result = run(arguments);
-  ASSERT_EQ(result.status, 0) << result.err;
+  runWell(arguments);
 }
 
 TEST(Compare, SLOW_FoldersOfMapsHaveTheDifferencesOfTheirScenarios) {
@@ -103,13 +95,11 @@ TEST(Compare, SLOW_FoldersOfMapsHaveTheDifferencesOfTheirScenarios) {
   Arguments changed = same;
   changed.insert(changed.end(), {"--set", "emitters.jammer.power_w=1"});
   cover(folder / "b", changed);
-  const ProgramResult of_folders = run({"compare", folder / "a", folder / "b", "-o", folder / "out", "--json",
-                                        "--quiet", "--format", "cog,gpkg,nc"});
-  ASSERT_EQ(of_folders.status, 0) << of_folders.err;
+  const ProgramResult of_folders = runWell({"compare", folder / "a", folder / "b", "-o", folder / "out",
+                                            "--json", "--quiet", "--format", "cog,gpkg,nc"});
   const ProgramResult of_scenarios =
-      run(compare(folder / "solved", {"--set-b", "emitters.jammer.power_w=1", "--json", "--quiet",
-                                      "--products", "covered,value,min_height", "--format", "cog"}));
-  ASSERT_EQ(of_scenarios.status, 0) << of_scenarios.err;
+      runWell(compare(folder / "solved", {"--set-b", "emitters.jammer.power_w=1", "--json", "--quiet",
+                                          "--products", "covered,value,min_height", "--format", "cog"}));
   const json found = json::parse(of_folders.out), expected = json::parse(of_scenarios.out);
   EXPECT_EQ(found["comparison"], expected["comparison"]);
   EXPECT_EQ(found["changed_areas"], expected["changed_areas"]) << "explained by the scenarios";
@@ -122,9 +112,8 @@ TEST(Compare, SLOW_FoldersOfMapsHaveTheDifferencesOfTheirScenarios) {
         << map;
   EXPECT_FALSE(readFile(folder / "out/maps/compare.gpkg").empty());
 
-  const ProgramResult one = run({"compare", folder / "a", folder / "b", "-o", folder / "one", "--json",
-                                 "--quiet", "--products", "value"});
-  ASSERT_EQ(one.status, 0) << one.err;
+  const ProgramResult one = runWell({"compare", folder / "a", folder / "b", "-o", folder / "one", "--json",
+                                     "--quiet", "--products", "value"});
   EXPECT_EQ(json::parse(one.out)["comparison"].size(), 1u);
 }
 
@@ -133,15 +122,13 @@ TEST(Compare, SLOW_FoldersWithoutTheirScenariosAreComparedButNotExplained) {
   const std::string scenario = folder.write("own.yaml", readFile(shippedScenario("quick.yaml")));
   for (const char* power : {"10", "1000"}) {
     const ProgramResult result =
-        run({"coverage", scenario, "-o", folder / power, "--cell", "1000", "--quantity",
-             "power_density_dbwm2", "--threshold", "-60", "--format", "cog", "--quiet", "--set",
-             "emitters.transmitter.power_w=" + std::string(power)});
-    ASSERT_EQ(result.status, 0) << result.err;
+        runWell({"coverage", scenario, "-o", folder / power, "--cell", "1000", "--quantity",
+                 "power_density_dbwm2", "--threshold", "-60", "--format", "cog", "--quiet", "--set",
+                 "emitters.transmitter.power_w=" + std::string(power)});
   }
   std::filesystem::remove(scenario);
   const ProgramResult result =
-      run({"compare", folder / "10", folder / "1000", "-o", folder / "out", "--quiet"});
-  ASSERT_EQ(result.status, 0) << result.err;
+      runWell({"compare", folder / "10", folder / "1000", "-o", folder / "out", "--quiet"});
   EXPECT_THAT(result.err, HasSubstr("own.yaml or one of its files is not there or has changed"));
   EXPECT_THAT(result.out, testing::AllOf(HasSubstr("Gained: "), testing::Not(HasSubstr("No emitter"))));
   EXPECT_THAT(readFile(folder / "out/report.html"), HasSubstr("Largest areas that changed"));
@@ -157,9 +144,8 @@ TEST(Compare, SLOW_FoldersWhoseTimesDifferByARoundingErrorMatch) {
   report.replace(report.find(time), time.size(), "\"time_s\": 0.30000000000000004,");
   writeFile(folder / "b/report.json", report);
   for (const Arguments& order : {Arguments{"a", "b"}, {"b", "a"}}) {
-    const ProgramResult result = run({"compare", folder / order[0], folder / order[1], "-o", folder / "out",
-                                      "--times", "0.3", "--quiet", "--json"});
-    ASSERT_EQ(result.status, 0) << result.err;
+    const ProgramResult result = runWell({"compare", folder / order[0], folder / order[1], "-o",
+                                          folder / "out", "--times", "0.3", "--quiet", "--json"});
     EXPECT_EQ(json::parse(result.out)["comparison"].size(), 1u);
   }
 }
@@ -169,11 +155,8 @@ TEST(Compare, SLOW_RefusesIncompatibleFolders) {
   const auto with = [&](const std::string& name, const Arguments& more) { cover(folder / name, more); };
   with("a", {});
   const auto errorOf = [&](const std::string& b, const Arguments& more, int status) {
-    Arguments arguments{"compare", folder / "a", folder / b, "-o", folder / "out", "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
+    return errorOfRun(joined({"compare", folder / "a", folder / b, "-o", folder / "out", "--quiet"}, more),
+                      status);
   };
   with("cell", {"--cell", "2000"});
   EXPECT_THAT(errorOf("cell", {}, 3), testing::AllOf(HasSubstr("/cell: the grid of pixels differs from "),
@@ -194,9 +177,8 @@ TEST(Compare, SLOW_RefusesIncompatibleFolders) {
   folder.write("file", "");
   EXPECT_THAT(errorOf("file", {}, 2), HasSubstr("is a folder and"));
   const std::string report = readFile(folder / "a/report.json");
-  const ProgramResult onto_itself = run({"compare", folder / "a", folder / "a", "-o", folder / "a/."});
-  EXPECT_EQ(onto_itself.status, 2);
-  EXPECT_THAT(onto_itself.err, HasSubstr("is one of the folders to compare"));
+  EXPECT_THAT(errorOfRun({"compare", folder / "a", folder / "a", "-o", folder / "a/."}, 2),
+              HasSubstr("is one of the folders to compare"));
   EXPECT_EQ(readFile(folder / "a/report.json"), report);
   EXPECT_THAT(errorOf("a", {"--products", "best"}, 2), HasSubstr("'best'"));
   EXPECT_THAT(errorOf("a", {"--products", "count"}, 2),

@@ -15,17 +15,15 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 Arguments coverage(const TemporaryFolder& folder, const Arguments& more) {
-  Arguments arguments{"coverage", shippedScenario("jacksboro.yaml"), "-o", folder / "out", "--cell", "500"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"coverage", shippedScenario("jacksboro.yaml"), "-o", folder / "out", "--cell", "500"}, more);
 }
 
 TEST(Coverage, WritesMapsPicturesAndAReport) {
   const TemporaryFolder folder;
-  const ProgramResult result = run(coverage(folder, {"--heights", "agl:50;msl:1200.5", "--products",
-                                                     "covered,best", "--times", "80", "--json", "--quiet"}));
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report =
+      json::parse(runWell(coverage(folder, {"--heights", "agl:50;msl:1200.5", "--products", "covered,best",
+                                            "--times", "80", "--json", "--quiet"}))
+                      .out);
   EXPECT_EQ(report, json::parse(readFile(folder / "out/report.json")));
   for (const char* key : {"emscape", "scenario", "scenario_hash", "quantity", "threshold", "crs", "cell_m",
                           "pixels", "emitters", "warnings"}) {
@@ -63,9 +61,7 @@ TEST(Coverage, WritesMapsPicturesAndAReport) {
 TEST(Coverage, SLOW_TwoRunsWriteTheSameBytes) {
   const TemporaryFolder first, second;
   for (const TemporaryFolder* folder : {&first, &second}) {
-    const ProgramResult result =
-        run(coverage(*folder, {"--products", "value,fraction", "--times", "70:80:10"}));
-    ASSERT_EQ(result.status, 0) << result.err;
+    runWell(coverage(*folder, {"--products", "value,fraction", "--times", "70:80:10"}));
   }
   ASSERT_EQ(first.files(), second.files());
   for (const std::string& file : first.files())
@@ -74,10 +70,7 @@ TEST(Coverage, SLOW_TwoRunsWriteTheSameBytes) {
 
 TEST(Coverage, SLOW_RemovesTheOutputsOfAnEarlierRun) {
   const TemporaryFolder folder;
-  const auto runWith = [&](const Arguments& more) {
-    const ProgramResult result = run(coverage(folder, more));
-    EXPECT_EQ(result.status, 0) << result.err;
-  };
+  const auto runWith = [&](const Arguments& more) { runWell(coverage(folder, more)); };
   runWith({"--products", "value,count,best", "--quantity", "detection_probability", "--times", "80",
            "--format", "cog,png,gpkg"});
   const std::string kept = folder / "out/maps/count_agl150m_t80s.png";
@@ -98,9 +91,7 @@ TEST(Coverage, SLOW_RemovesTheOutputsOfAnEarlierRun) {
 TEST(Coverage, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const auto errorOf = [&](const Arguments& more, int status) {
-    const ProgramResult result = run(coverage(folder, more));
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
+    return errorOfRun(coverage(folder, more), status);
   };
   EXPECT_THAT(errorOf({"--products", "holes"}, 2), HasSubstr("unknown product 'holes'"));
   EXPECT_THAT(errorOf({"--heights", "100"}, 2), HasSubstr("'100' must be one of agl:"));

@@ -52,8 +52,7 @@ TEST(ForeignFolder, SLOW_FilesOfTheUserThatAreNamedLikePartsAreKept) {
   const fs::path empty = folder.path() / "out/folder.part-54321";
   fs::create_directory(empty);
   for (const Arguments& arguments : writersInto(folder)) {
-    const ProgramResult result = run(arguments);
-    ASSERT_EQ(result.status, 0) << result.err;
+    runWell(arguments);
     for (const std::string& file : kept)
       EXPECT_EQ(readFile(folder / file), "data") << arguments[0] << ": " << file;
     EXPECT_TRUE(fs::is_directory(empty)) << arguments[0];
@@ -101,10 +100,8 @@ TEST(ForeignFolder, AJournalThatIsALinkRunsNoCommandOfAStranger) {
   writeFile(folder / "bashrc", "true\n");
   fs::create_directories(folder / "out/parts");
   fs::create_symlink("../../bashrc", folder / "out/parts/part_00001.rows");
-  const ProgramResult result =
-      run({"study", "study.yaml", "-o", "out"}, "cd " + folder.path().string() + ";");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("out/parts/part_00001.rows: cannot write: it is a symbolic link"));
+  EXPECT_THAT(errorOfRun({"study", "study.yaml", "-o", "out"}, 1, "cd " + folder.path().string() + ";"),
+              HasSubstr("out/parts/part_00001.rows: cannot write: it is a symbolic link"));
   EXPECT_EQ(readFile(folder / "bashrc"), "true\n");
 }
 

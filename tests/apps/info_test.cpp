@@ -70,9 +70,7 @@ TEST(Info, MissingLibraryOfOpenVdbIsNamedWithItsPackage) {
 TEST(InfoOfRefractivity, ListsDuctsOfAProfile) {
   const TemporaryFolder folder;
   const std::string file = folder.write("air.csv", kSurfaceBased);
-  const ProgramResult result = run({"info", file, "--json", "--plot", folder / "air.png"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell({"info", file, "--json", "--plot", folder / "air.png"}).out);
   EXPECT_EQ(report.at("kind"), "refractivity");
   const json& duct = report.at("profiles").at(0).at("ducts").at(0);
   EXPECT_EQ(duct.at("kind"), "surface-based");
@@ -110,22 +108,19 @@ TEST(Info, ReportsBytesThatAreNotUtf8AsReplacements) {
   const json problems = json::parse(run({"validate", broken, "--json"}).out).at("problems");
   EXPECT_THAT(problems.at(0).at("file").get<std::string>(), HasSubstr("/b\xEF\xBF\xBD.yaml"));
   EXPECT_EQ(run({"render", file, "-o", folder / "o\xE9.png", "--size", "64x48", "--json"}).status, 0);
-  const ProgramResult coverage =
-      run({"coverage", file, "-o", folder / "maps", "--format", "czml", "--cell", "4000"});
-  EXPECT_EQ(coverage.status, 0) << coverage.err;
+  runWell({"coverage", file, "-o", folder / "maps", "--format", "czml", "--cell", "4000"});
   EXPECT_THAT(readFile(folder / "maps/study.json"), HasSubstr("/s\xEF\xBF\xBD.yaml"));
 }
 
 TEST(InfoOfRefractivity, ReadsSoundingsByTheirContent) {
   const TemporaryFolder folder;
   const ProgramResult result =
-      run({"info",
-           folder.write("USM00072649-data.txt",
-                        "#USM00072649 2023 11 18 00 2303    2 ncdc-nws           448497  -935647\n"
-                        "21     0  98107B  290    65B  350   143   360     0 \n"
-                        "20    33  95916   476B   60B  325   152   224    73 \n"),
-           "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
+      runWell({"info",
+               folder.write("USM00072649-data.txt",
+                            "#USM00072649 2023 11 18 00 2303    2 ncdc-nws           448497  -935647\n"
+                            "21     0  98107B  290    65B  350   143   360     0 \n"
+                            "20    33  95916   476B   60B  325   152   224    73 \n"),
+               "--json"});
   EXPECT_EQ(json::parse(result.out).at("profiles").at(0).at("levels"), 2);
 }
 
@@ -139,9 +134,8 @@ platforms: [{name: site, position: {latitude_deg: 36, longitude_deg: -84, height
 emitters:
   - {name: r, platform: site, kind: transmitter, frequency_hz: 1.0e10, power_w: 10, antenna: {pattern: isotropic}}
 )");
-  const ProgramResult result = run({"info", file, "--json", "--plot", folder / "duct.svg"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out).at("refractivity");
+  const json report =
+      json::parse(runWell({"info", file, "--json", "--plot", folder / "duct.svg"}).out).at("refractivity");
   EXPECT_EQ(report.at("profiles").at(0).at("ducts").at(0).at("kind"), "evaporation");
   EXPECT_EQ(report.at("profiles").at(0).at("ducts").at(0).at("trapped_modes").at(0).at("frequency_hz"), 1e10);
   EXPECT_EQ(report.at("members").at("count"), 10);
@@ -171,9 +165,7 @@ emitters:
 
 TEST(Info, AHeaderOfValuesDescribesThem) {
   const TemporaryFolder folder;
-  const ProgramResult written =
-      run({"simulate", quick(), "-o", folder / "out", "--format", "raw,nvdb", "--times", "0"});
-  ASSERT_EQ(written.status, 0) << written.err;
+  runWell({"simulate", quick(), "-o", folder / "out", "--format", "raw,nvdb", "--times", "0"});
   for (const std::string ending : {".raw", ".nvdb"}) {
     std::string file;
     for (const auto& entry : std::filesystem::directory_iterator(folder / "out"))
@@ -187,9 +179,8 @@ TEST(Info, AHeaderOfValuesDescribesThem) {
 
 TEST(InfoOfRefractivity, RefusesAPlotOfOtherFiles) {
   const TemporaryFolder folder;
-  const ProgramResult result = run({"info", quick(), "--plot", folder / "x.png"});
-  EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.err, HasSubstr("--plot draws refractivity"));
+  EXPECT_THAT(errorOfRun({"info", quick(), "--plot", folder / "x.png"}, 2),
+              HasSubstr("--plot draws refractivity"));
   EXPECT_EQ(run({"info", quick(), "--plot", folder / "x.pdf"}).status, 2);
   EXPECT_EQ(run({"info", folder.write("air.csv", "height_msl_m,m_units\n0,330\n")}).status, 3);
 }
@@ -205,9 +196,8 @@ TEST(Info, RefusesAVolumeThatDoesNotFitBeforeItReadsItsValues) {
                    " Origin=\"0 0 0\" Spacing=\"1 1 1\"><Piece Extent=" + extent +
                    "><PointData><DataArray type=\"UInt8\" Name=\"a\" format=\"ascii\">1 2 3</DataArray>"
                    "</PointData></Piece></ImageData></VTKFile>\n");
-  const ProgramResult result = run({"info", file}, "ulimit -v 1000000;");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, testing::HasSubstr("a.vti: array a of 1073741824 values needs up to 5120 MiB"));
+  EXPECT_THAT(errorOfRun({"info", file}, 1, "ulimit -v 1000000;"),
+              testing::HasSubstr("a.vti: array a of 1073741824 values needs up to 5120 MiB"));
 }
 
 TEST(Info, EntriesBesideTheVolumesEndNoReading) {
@@ -215,8 +205,7 @@ TEST(Info, EntriesBesideTheVolumesEndNoReading) {
   ASSERT_EQ(run({"simulate", quick(), "--times", "0", "-o", folder / "s"}).status, 0);
   std::filesystem::create_symlink("loop", folder / "s/loop");
   std::filesystem::create_symlink("nowhere", folder / "s/a.vdb");
-  const ProgramResult result = run({"info", folder / "s"});
-  EXPECT_EQ(result.status, 0) << result.err;
+  runWell({"info", folder / "s"});
 }
 
 }  // namespace

@@ -15,15 +15,11 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 Arguments links(const Arguments& more) {
-  Arguments arguments{"link", shippedScenario("links.yaml"), "--times", "0:60:20"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"link", shippedScenario("links.yaml"), "--times", "0:60:20"}, more);
 }
 
 TEST(Link, JsonHasContractKeys) {
-  const ProgramResult result = run(links({"--json"}));
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell(links({"--json"})).out);
   ASSERT_EQ(report["links"].size(), 3u) << "those in a receiver's band and on another platform";
   for (const json& link : report["links"]) {
     for (const char* key :
@@ -53,48 +49,41 @@ TEST(Link, ANameMayContainACommaAndIsTakenOnce) {
       "center_frequency_hz: 100.0e6, bandwidth_hz: 1.0e5}\n";
   const std::string file = folder.write("comma.yaml", text);
   const auto linksOf = [&](const Arguments& more) {
-    Arguments arguments{"link", file, "--times", "0", "--receiver", "set", "--json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 0) << result.err;
-    return json::parse(result.out).at("links").size();
+    return json::parse(
+               runWell(joined({"link", file, "--times", "0", "--receiver", "set", "--json"}, more)).out)
+        .at("links")
+        .size();
   };
   EXPECT_EQ(linksOf({"--emitter", "a,b"}), 1u);
   EXPECT_EQ(linksOf({"--emitter", "radar", "--emitter", "a,b"}), linksOf({}));
   EXPECT_EQ(linksOf({"--emitter", "a,b", "--emitter", "a,b"}), 1u);
-  const ProgramResult unknown = run({"link", file, "--emitter", "radar,b"});
-  EXPECT_EQ(unknown.status, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("--emitter: no emitter 'b' in"));
+  EXPECT_THAT(errorOfRun({"link", file, "--emitter", "radar,b"}, 2),
+              HasSubstr("--emitter: no emitter 'b' in"));
 }
 
 TEST(Link, RowEqualsProfileOfThePath) {
-  const ProgramResult result = run(links({"--json", "--emitter", "jammer", "--receiver", "handset"}));
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report =
+      json::parse(runWell(links({"--json", "--emitter", "jammer", "--receiver", "handset"})).out);
   EXPECT_EQ(report["detections"].size(), 0u) << "a choice of receivers leaves the targets out";
   const json row = report["links"][0]["rows"][2];
   EXPECT_EQ(row["time_s"], 40);
-  const ProgramResult profile = run({"profile", shippedScenario("links.yaml"), "--emitter", "jammer", "--to",
-                                     "36.24925,-84.14697,3", "--agl", "--time", "40", "--json"});
-  ASSERT_EQ(profile.status, 0) << profile.err;
-  const json path = json::parse(profile.out);
+  const json path = json::parse(runWell({"profile", shippedScenario("links.yaml"), "--emitter", "jammer",
+                                         "--to", "36.24925,-84.14697,3", "--agl", "--time", "40", "--json"})
+                                    .out);
   EXPECT_EQ(row["power_density_dbwm2"], path["budget"]["power_density_dbwm2"]);
   EXPECT_EQ(row["range_m"], path["geometry"]["slant_range_m"]);
   EXPECT_EQ(row["verdict"], path["verdict"]);
 }
 
 TEST(Link, PrintsASummaryAndATableOfEachPair) {
-  const ProgramResult result = run(links({"--target", "drone"}));
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell(links({"--target", "drone"}));
   for (const char* part : {"Targets\n", "Radar 'search radar' and target 'drone'", "cumulative"})
     EXPECT_THAT(result.out, HasSubstr(part));
 }
 
 TEST(Link, WritesRowsOfOneWidthAndAPicture) {
   const TemporaryFolder folder;
-  const ProgramResult result =
-      run(links({"--csv", folder / "links.csv", "--plot", folder / "links.png", "--size", "700x400"}));
-  ASSERT_EQ(result.status, 0) << result.err;
+  runWell(links({"--csv", folder / "links.csv", "--plot", folder / "links.png", "--size", "700x400"}));
   EXPECT_EQ(readFile(folder / "links.png").substr(1, 3), "PNG");
   std::istringstream lines(readFile(folder / "links.csv"));
   int rows = 0;
@@ -115,16 +104,12 @@ TEST(Link, RefusesNamesAndScenariosWithoutLinksWithOneClearError) {
   EXPECT_EQ(nobody.status, 2);
   EXPECT_THAT(nobody.err, HasSubstr("--receiver: no receiver with a platform 'nobody' in "));
   EXPECT_THAT(nobody.err, HasSubstr("it has 'warning receiver', 'handset'"));
-  const ProgramResult none = run({"link", shippedScenario("quick.yaml")});
-  EXPECT_EQ(none.status, 3);
-  EXPECT_THAT(none.err, HasSubstr("there is no link: "));
+  EXPECT_THAT(errorOfRun({"link", shippedScenario("quick.yaml")}, 3), HasSubstr("there is no link: "));
   EXPECT_EQ(run(links({"--plot", "links.gif"})).status, 2);
 }
 
 TEST(Info, ShowsWaveformsReceiversAndTargets) {
-  const ProgramResult result = run({"info", shippedScenario("links.yaml"), "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell({"info", shippedScenario("links.yaml"), "--json"}).out);
   const json waveform = report["emitters"][0]["waveform"];
   EXPECT_EQ(waveform["pulses"], 62);
   EXPECT_NEAR(waveform["mean_power_w"].get<double>(), 6, 1e-9);

@@ -40,9 +40,8 @@ TEST(LivePrograms, AnExerciseOfOneProgramIsTheFieldOfTheOther) {
   RunningProgram live({"live", "--dis", port, "--base", quick(), "--json", "--duration", "8", "-o",
                        folder / "now", "--record", record});
   pause(1500);
-  const ProgramResult played =
-      run({"play", shippedScenario("jamming.yaml"), "--dis-out", port, "--set", "duration_s=2", "--json"});
-  EXPECT_EQ(played.status, 0) << played.err;
+  const ProgramResult played = runWell(
+      {"play", shippedScenario("jamming.yaml"), "--dis-out", port, "--set", "duration_s=2", "--json"});
   const ProgramResult result = live.wait();
   ASSERT_EQ(result.status, 0) << result.err;
   const std::vector<json> lines = linesOf(result.out);
@@ -92,23 +91,18 @@ TEST(LivePrograms, CtrlCEndsThem) {
 }
 
 TEST(LivePrograms, FaultsNameOptionValueAndRemedy) {
-  const auto errorOf = [](const Arguments& arguments, int status) {
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
-  };
-  EXPECT_THAT(errorOf({"live", "--base", quick()}, 2), HasSubstr("--dis 127.0.0.1:3000"));
-  EXPECT_THAT(errorOf({"live", "--dis", "3000"}, 2), HasSubstr("--base is needed"));
-  EXPECT_THAT(errorOf({"live", "--dis", "99999", "--base", quick()}, 2), HasSubstr("the port 1..65535"));
-  EXPECT_THAT(errorOf({"live", "--dis", "203.0.113.1:3000", "--base", quick()}, 1),
+  EXPECT_THAT(errorOfRun({"live", "--base", quick()}, 2), HasSubstr("--dis 127.0.0.1:3000"));
+  EXPECT_THAT(errorOfRun({"live", "--dis", "3000"}, 2), HasSubstr("--base is needed"));
+  EXPECT_THAT(errorOfRun({"live", "--dis", "99999", "--base", quick()}, 2), HasSubstr("the port 1..65535"));
+  EXPECT_THAT(errorOfRun({"live", "--dis", "203.0.113.1:3000", "--base", quick()}, 1),
               HasSubstr("this computer has no such address"));
-  EXPECT_THAT(errorOf({"live", "--acmi", freePort(), "--base", quick()}, 1),
+  EXPECT_THAT(errorOfRun({"live", "--acmi", freePort(), "--base", quick()}, 1),
               HasSubstr("no program listens there"));
-  EXPECT_THAT(errorOf({"play", quick()}, 2), HasSubstr("--dis-out"));
+  EXPECT_THAT(errorOfRun({"play", quick()}, 2), HasSubstr("--dis-out"));
   EXPECT_THAT(
-      errorOf({"play", quick(), "--dis-out", freePort(), "--set", "duration_s=1e6", "--step", "0.01"}, 2),
+      errorOfRun({"play", quick(), "--dis-out", freePort(), "--set", "duration_s=1e6", "--step", "0.01"}, 2),
       HasSubstr("more than the allowed"));
-  EXPECT_THAT(errorOf({"play", "a.pcap", "--acmi-server", "3000"}, 2),
+  EXPECT_THAT(errorOfRun({"play", "a.pcap", "--acmi-server", "3000"}, 2),
               HasSubstr("`emscape import` makes a scenario"));
 }
 

@@ -52,8 +52,7 @@ struct Help {
 
 Help helpOf(Arguments command) {
   command.emplace_back("--help");
-  const ProgramResult result = run(command);
-  EXPECT_EQ(result.status, 0);
+  const ProgramResult result = runWell(command);
   Help help;
   std::istringstream lines(result.out);
   std::string section;

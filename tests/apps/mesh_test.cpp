@@ -15,18 +15,15 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 Arguments simulate(const std::string& folder, const Arguments& more = {}) {
-  Arguments arguments{"simulate", shippedScenario("jacksboro.yaml"), "-o",      folder,
-                      "--set",    "region.dims=[20, 18, 10]",        "--times", "0:20:10",
-                      "--quiet"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"simulate", shippedScenario("jacksboro.yaml"), "-o", folder, "--set",
+                 "region.dims=[20, 18, 10]", "--times", "0:20:10", "--quiet"},
+                more);
 }
 
 TEST(MeshSeries, SLOW_IsReproducible) {
   const TemporaryFolder folder;
   for (const char* name : {"a", "b"}) {
-    const ProgramResult result = run(simulate(folder / name, {"--mesh", "terrain:9,4"}));
-    ASSERT_EQ(result.status, 0) << result.err;
+    const ProgramResult result = runWell(simulate(folder / name, {"--mesh", "terrain:9,4"}));
   }
   for (const char* file : {"jacksboro.pvd", "jacksboro_0001.vtu", "jacksboro_0003.vtu", "series.json"}) {
     EXPECT_EQ(readFile(folder / ("a/" + std::string(file))), readFile(folder / ("b/" + std::string(file))))
@@ -37,9 +34,7 @@ TEST(MeshSeries, SLOW_IsReproducible) {
   EXPECT_EQ(run(simulate(folder / "a", {"--mesh", "terrain:9,5", "--resume"})).status, 3);
 
   for (const char* input : {"a", "a/jacksboro.pvd"}) {
-    const ProgramResult described = run({"info", folder / input, "--json"});
-    ASSERT_EQ(described.status, 0) << described.err;
-    const json info = json::parse(described.out);
+    const json info = json::parse(runWell({"info", folder / input, "--json"}).out);
     EXPECT_EQ(info["kind"], "mesh");
     EXPECT_EQ(info["steps"], 3);
     EXPECT_EQ(info["points"], 20 * 18 * 10);
@@ -51,9 +46,7 @@ TEST(MeshSeries, SLOW_IsReproducible) {
   }
 
   const auto render = [&](const Arguments& more) {
-    Arguments arguments{"render", folder / "a", "--size", "320x240", "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments);
+    return run(joined({"render", folder / "a", "--size", "320x240", "--quiet"}, more));
   };
   for (const char* name : {"one.png", "two.png"}) {
     const ProgramResult drawn =
@@ -66,9 +59,7 @@ TEST(MeshSeries, SLOW_IsReproducible) {
       << "named by the scenario, which the series knows";
 
   const auto refusal = [&](const Arguments& more) {
-    Arguments arguments{"-o", folder / "no.png"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = render(arguments);
+    const ProgramResult result = render(joined({"-o", folder / "no.png"}, more));
     EXPECT_EQ(result.status, 2);
     return result.err;
   };
@@ -89,9 +80,7 @@ TEST(MeshSeries, SLOW_ScenarioIsDrawnLikeItsFiles) {
   const auto draw = [&](Arguments arguments, const Arguments& more) {
     arguments.insert(arguments.begin(), "render");
     for (const Arguments& some : {picture, more}) arguments.insert(arguments.end(), some.begin(), some.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 0) << result.err;
-    return json::parse(result.out);
+    return json::parse(runWell(arguments).out);
   };
   const std::string scenario = shippedScenario("jacksboro.yaml");
   const Arguments computed{scenario,         "--mesh",  "terrain:9,4", "--set", "region.dims=[20, 18, 10]",
@@ -154,9 +143,7 @@ TEST(MeshFile, DamageIsReportedInOneLine) {
   const std::string file = folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\"></VTKFile>");
   for (const Arguments& arguments :
        {Arguments{"info", file}, Arguments{"render", file, "-o", folder / "a.png"}}) {
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 3);
-    EXPECT_THAT(result.err, HasSubstr("a.vtu: an unstructured grid in one piece can be read"));
+    EXPECT_THAT(errorOfRun(arguments, 3), HasSubstr("a.vtu: an unstructured grid in one piece can be read"));
   }
 }
 

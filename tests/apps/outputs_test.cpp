@@ -38,9 +38,7 @@ class Outputs : public testing::Test {
     const std::vector<std::string> files = folder_.files();
     const std::string links = readFile(links_), quick = readFile(quick_),
                       drone = readFile(folder_ / "data/drone.csv");
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, kUsage) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("emscape: error: " + message));
+    EXPECT_THAT(errorOfRun(arguments, kUsage), HasSubstr("emscape: error: " + message));
     EXPECT_EQ(folder_.files(), files);
     EXPECT_EQ(readFile(links_), links);
     EXPECT_EQ(readFile(quick_), quick);
@@ -104,8 +102,7 @@ TEST_F(Outputs, OfCoverageDoNotReplaceAUsersFile) {
   const Arguments again{"coverage", quick_, "-o", folder_ / "maps", "--cell", "2000",
                         "--format", "png",  "-q"};
   EXPECT_EQ(run(again).status, 0);
-  const ProgramResult second = run(again);
-  EXPECT_EQ(second.status, 0) << second.err;
+  runWell(again);
 }
 
 TEST_F(Outputs, OfCoverageAndCompareDoNotReplaceAnElevationFile) {
@@ -133,8 +130,7 @@ TEST_F(Outputs, OfCoverageAndCompareDoNotReplaceAnElevationFile) {
   EXPECT_TRUE(readFile(folder_ / map) == readFile(folder_ / "data/jacksboro.tif"));
   fs::rename(folder_ / map, folder_ / "maps/country.tif");  // a product is named "count"
   withElevations("maps/country.tif");
-  const ProgramResult result = run(coverage);
-  EXPECT_EQ(result.status, 0) << result.err;
+  runWell(coverage);
   EXPECT_TRUE(readFile(folder_ / "maps/country.tif") == readFile(folder_ / "data/jacksboro.tif"));
 }
 
@@ -155,16 +151,14 @@ TEST_F(Outputs, OfASeriesDoNotReplaceAFileOfTheScenario) {
       EXPECT_EQ(readFile(track), points);
     }
   }
-  const ProgramResult beside = run({"simulate", quick_, "-o", folder_.path().string(), "--times", "0", "-q"});
-  EXPECT_EQ(beside.status, 0) << beside.err;
+  runWell({"simulate", quick_, "-o", folder_.path().string(), "--times", "0", "-q"});
 }
 
 TEST_F(Outputs, BeyondTheLimitOfAFilesSizeAreAnErrorWithoutRemains) {
   const std::vector<std::string> files = folder_.files();
-  const ProgramResult result =
-      run({"render", quick_, "--times", "0", "-o", folder_ / "x.png", "-q"}, "ulimit -f 20;");
-  EXPECT_EQ(result.status, kOther);
-  EXPECT_THAT(result.err, HasSubstr("x.png: cannot write: File too large"));
+  EXPECT_THAT(
+      errorOfRun({"render", quick_, "--times", "0", "-o", folder_ / "x.png", "-q"}, kOther, "ulimit -f 20;"),
+      HasSubstr("x.png: cannot write: File too large"));
   EXPECT_EQ(folder_.files(), files);
 }
 
@@ -191,9 +185,8 @@ TEST_F(Outputs, AreCompleteAtProcessorTimeLimit) {
 
 TEST_F(Outputs, ReplaceAForeignSeriesAsAWhole) {
   const auto simulate = [&](const std::string& scenario, const std::string& times) {
-    const ProgramResult result = run({"simulate", scenario, "-o", folder_ / "s", "--times", times, "--set",
-                                      "region.dims=[8, 8, 2]", "--force", "-q"});
-    EXPECT_EQ(result.status, 0) << result.err;
+    runWell({"simulate", scenario, "-o", folder_ / "s", "--times", times, "--set", "region.dims=[8, 8, 2]",
+             "--force", "-q"});
   };
   simulate(links_, "0:1");
   simulate(quick_, "0:2");
@@ -211,9 +204,8 @@ TEST(Inputs, ThatArePipesAreRefused) {
     EXPECT_EQ(info.err, "emscape: error: " + pipe + ": cannot read: it is not a regular file\n");
   }
   for (const char* name : {"f.dat", "f.vti", "f.yaml"}) {
-    const ProgramResult render = run({"render", folder / name, "-o", folder / "x.png", "-q"});
-    EXPECT_EQ(render.status, kBadInput);
-    EXPECT_THAT(render.err, HasSubstr("cannot read: it is not a regular file\n"));
+    EXPECT_THAT(errorOfRun({"render", folder / name, "-o", folder / "x.png", "-q"}, kBadInput),
+                HasSubstr("cannot read: it is not a regular file\n"));
   }
 }
 
@@ -223,8 +215,7 @@ TEST(Results, OfAFieldWithoutAnyValueAreToldWithTheirLikelyCause) {
     Arguments arguments{"simulate", quick(),      "--times", "0:2:1", "--force",
                         "-o",       folder / "s", "--set",   edit};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult simulated = run(arguments);
-    EXPECT_EQ(simulated.status, 0) << simulated.err;
+    const ProgramResult simulated = runWell(arguments);
     arguments = {"render", quick(), "--times", "0", "--size", "64x48", "-o", folder / "a.png", "--set", edit};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ProgramResult drawn = run(arguments);
@@ -261,9 +252,8 @@ TEST(Results, PicturesOfAnEarlierRunAreNamedAndKept) {
 TEST(Results, OfTallMapsHaveAPictureThatCanBeDrawn) {
   const TemporaryFolder folder;
   const ProgramResult result =
-      run({"coverage", quick(), "-o", folder / "o", "--area", "bbox:3,-85,7,85", "--cell", "100000",
-           "--products", "value", "--times", "0", "--format", "cog"});
-  EXPECT_EQ(result.status, 0) << result.err;
+      runWell({"coverage", quick(), "-o", folder / "o", "--area", "bbox:3,-85,7,85", "--cell", "100000",
+               "--products", "value", "--times", "0", "--format", "cog"});
 }
 
 TEST(Results, OfPlotsBeyondTheMemoryAreRefusedBeforeTheWork) {
@@ -271,11 +261,10 @@ TEST(Results, OfPlotsBeyondTheMemoryAreRefusedBeforeTheWork) {
   GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
 #endif
   const TemporaryFolder folder;
-  const ProgramResult result = run({"profile", quick(), "--emitter", "radar", "--to", "52.05,5.05,100",
-                                    "--plot", folder / "a.png", "--size", "32767x32767"},
-                                   "ulimit -v 4000000;");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("a picture of 32767x32767 pixels needs up to"));
+  EXPECT_THAT(errorOfRun({"profile", quick(), "--emitter", "radar", "--to", "52.05,5.05,100", "--plot",
+                          folder / "a.png", "--size", "32767x32767"},
+                         1, "ulimit -v 4000000;"),
+              HasSubstr("a picture of 32767x32767 pixels needs up to"));
 }
 
 // Pango ends a program of which it cannot start a thread.

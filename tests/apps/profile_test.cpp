@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.h"
@@ -21,16 +20,13 @@ const std::string& jacksboro() {
 
 /// The point is behind the ridge as seen from the jammer at 40 s.
 Arguments blockedPath(const Arguments& more = {}) {
-  Arguments arguments{"profile", jacksboro(), "--emitter",          "jammer", "--time",
-                      "40",      "--to",      "36.27,-84.24167,15", "--agl"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined(
+      {"profile", jacksboro(), "--emitter", "jammer", "--time", "40", "--to", "36.27,-84.24167,15", "--agl"},
+      more);
 }
 
 TEST(Profile, JsonHasContractKeys) {
-  const ProgramResult result = run(blockedPath({"--json", "--model", "diffraction,free_space"}));
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell(blockedPath({"--json", "--model", "diffraction,free_space"})).out);
   for (const char* key : {"scenario", "emitter", "time_s", "time_utc", "active", "frequency_hz", "from", "to",
                           "geometry", "obstacles", "model", "model_why", "excess_db", "excess_parts_db",
                           "budget", "compared", "warnings", "verdict", "profile"}) {
@@ -55,8 +51,7 @@ TEST(Profile, JsonHasContractKeys) {
 }
 
 TEST(Profile, ATableEndsWithTheVerdict) {
-  const ProgramResult result = run(blockedPath());
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell(blockedPath());
   for (const char* part :
        {"Geometry", "Obstacles", "Budget by '", "EIRP along the ray", "decides", "Blocked: "})
     EXPECT_THAT(result.out, HasSubstr(part));
@@ -77,21 +72,18 @@ TEST(Profile, WithoutAnEpochATimeIsInSecondsAlone) {
 }
 
 TEST(Profile, RadarReportsDetection) {
-  const ProgramResult result =
-      run({"profile", jacksboro(), "--emitter", "search radar", "--to", "36.35,-84.25,900", "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json budget = json::parse(result.out)["budget"];
+  const json budget = json::parse(
+      runWell({"profile", jacksboro(), "--emitter", "search radar", "--to", "36.35,-84.25,900", "--json"})
+          .out)["budget"];
   for (const char* key : {"snr_db", "required_snr_db", "detection_probability"})
     EXPECT_TRUE(budget.contains(key)) << key;
 }
 
 TEST(Profile, DrawsPicturesOfEitherKind) {
   const TemporaryFolder folder;
-  const ProgramResult png = run(blockedPath({"--plot", folder / "path.png", "--size", "700x400"}));
-  ASSERT_EQ(png.status, 0) << png.err;
+  const ProgramResult png = runWell(blockedPath({"--plot", folder / "path.png", "--size", "700x400"}));
   EXPECT_EQ(readFile(folder / "path.png").substr(1, 3), "PNG");
-  const ProgramResult svg = run(blockedPath({"--plot", folder / "path.svg"}));
-  ASSERT_EQ(svg.status, 0) << svg.err;
+  const ProgramResult svg = runWell(blockedPath({"--plot", folder / "path.svg"}));
   EXPECT_THAT(readFile(folder / "path.svg"), testing::AllOf(HasSubstr("<svg"), HasSubstr("</svg>")));
   EXPECT_EQ(folder.files().size(), 2u);
 }
@@ -123,16 +115,13 @@ TEST(Profile, RefusesInvalidPathsWithOneError) {
 }
 
 TEST(Profile, RefusesPlotsOfOtherKindsAndUnknownModels) {
-  const ProgramResult gif = run(blockedPath({"--plot", "path.gif"}));
-  EXPECT_EQ(gif.status, 2);
-  EXPECT_THAT(gif.err, HasSubstr("plots are written as .png or .svg"));
+  EXPECT_THAT(errorOfRun(blockedPath({"--plot", "path.gif"}), 2),
+              HasSubstr("plots are written as .png or .svg"));
   EXPECT_EQ(run(blockedPath({"--model", "magic"})).status, 2);
 }
 
 TEST(BenchModels, SLOW_JsonHasContractKeys) {
-  const ProgramResult result = run({"bench", "models", "--repeats", "1", "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json report = json::parse(result.out);
+  const json report = json::parse(runWell({"bench", "models", "--repeats", "1", "--json"}).out);
   std::vector<std::string> models;
   for (const json& timing : report["models"]) {
     models.push_back(timing["model"]);

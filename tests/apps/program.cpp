@@ -1,5 +1,6 @@
 #include "tests/apps/program.h"
 
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -50,6 +51,23 @@ std::string besideThisProgram(const std::string& name) {
 
 ProgramResult run(const Arguments& arguments, const std::string& shell_prefix) {
   return RunningProgram(arguments, shell_prefix).wait();
+}
+
+ProgramResult runWell(const Arguments& arguments, const std::string& shell_prefix) {
+  ProgramResult result = run(arguments, shell_prefix);
+  EXPECT_EQ(result.status, 0) << testing::PrintToString(arguments) << "\n" << result.err;
+  return result;
+}
+
+std::string errorOfRun(const Arguments& arguments, int status, const std::string& shell_prefix) {
+  const ProgramResult result = run(arguments, shell_prefix);
+  EXPECT_EQ(result.status, status) << testing::PrintToString(arguments) << "\n" << result.err;
+  return result.err;
+}
+
+Arguments joined(Arguments arguments, const Arguments& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
 }
 
 const std::string& quick() {

@@ -38,6 +38,15 @@ std::string besideThisProgram(const std::string& name);
 /// Runs `emscape ARGUMENTS` to its end.
 ProgramResult run(const Arguments& arguments, const std::string& shell_prefix = "");
 
+/// The same; the test fails if the exit status is not 0.
+ProgramResult runWell(const Arguments& arguments, const std::string& shell_prefix = "");
+
+/// The standard error of a run that must end with this exit status.
+std::string errorOfRun(const Arguments& arguments, int status, const std::string& shell_prefix = "");
+
+/// The arguments, and more after them.
+Arguments joined(Arguments arguments, const Arguments& more);
+
 /// scenarios/quick.yaml, the smallest scenario.
 const std::string& quick();
 /// The same with more voxels and one step per second, written into a folder; slow enough to be interrupted.

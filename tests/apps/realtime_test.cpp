@@ -21,10 +21,8 @@ using testing::IsSupersetOf;
 
 /// Plays the quick scenario in a small window, with every settled picture verified; returns the report.
 json play(const Arguments& more, const std::string& input = quick(), const std::string& size = "97x75") {
-  Arguments arguments{"render", input, "--realtime", "--size", size, "--verify", "--json"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  const ProgramResult result = run(arguments);
-  EXPECT_EQ(result.status, 0) << result.err;
+  const ProgramResult result =
+      runWell(joined({"render", input, "--realtime", "--size", size, "--verify", "--json"}, more));
   return result.status == 0 ? json::parse(result.out) : json();
 }
 
@@ -77,15 +75,13 @@ TEST(Realtime, PlaysVolumesFromFiles) {
 
 TEST(Realtime, PrintsEachFrameWithReasonOfItsPattern) {
   const ProgramResult result =
-      run({"render", quick(), "--realtime", "--size", "64x48", "--rays", "columns", "--duration", "0.5"});
-  ASSERT_EQ(result.status, 0) << result.err;
+      runWell({"render", quick(), "--realtime", "--size", "64x48", "--rays", "columns", "--duration", "0.5"});
   EXPECT_EQ(result.out, "");
   EXPECT_THAT(result.err, HasSubstr("BUSY    columns"));
   EXPECT_THAT(result.err, HasSubstr("(columns was requested)"));
   EXPECT_THAT(result.err, HasSubstr("per second requested"));
   const ProgramResult quiet =
-      run({"render", quick(), "--realtime", "--size", "64x48", "--duration", "0.2", "--quiet"});
-  EXPECT_EQ(quiet.status, 0);
+      runWell({"render", quick(), "--realtime", "--size", "64x48", "--duration", "0.2", "--quiet"});
   EXPECT_EQ(quiet.err, "");
 }
 
@@ -129,9 +125,7 @@ TEST(Realtime, UsageErrorsAreReported) {
       {{"render", quick()}, "--output"},
   };
   for (const auto& [arguments, named] : wrong) {
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_THAT(result.err, HasSubstr(named));
+    EXPECT_THAT(errorOfRun(arguments, 2), HasSubstr(named));
   }
 }
 

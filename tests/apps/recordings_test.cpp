@@ -20,24 +20,21 @@ using testing::HasSubstr;
 
 TEST(Recordings, ScenarioGoesThereAndBackWithoutFaults) {
   const TemporaryFolder folder;
-  const ProgramResult exported =
-      run({"export", shippedScenario("jamming.yaml"), "-o", folder / "a.pcap", "--step", "5", "--json"});
-  ASSERT_EQ(exported.status, 0) << exported.err;
-  const json told = json::parse(exported.out);
+  const json told = json::parse(
+      runWell({"export", shippedScenario("jamming.yaml"), "-o", folder / "a.pcap", "--step", "5", "--json"})
+          .out);
   for (const char* key : {"file", "format", "emitter_database", "records", "platforms", "emitters"})
     EXPECT_TRUE(told.contains(key)) << key;
-  const ProgramResult imported = run({"import", folder / "a.pcap", "-o", folder / "b.yaml", "--emitters",
-                                      told["emitter_database"].get<std::string>(), "--json"});
-  ASSERT_EQ(imported.status, 0) << imported.err;
-  const json result = json::parse(imported.out);
+  const json result = json::parse(runWell({"import", folder / "a.pcap", "-o", folder / "b.yaml", "--emitters",
+                                           told["emitter_database"].get<std::string>(), "--json"})
+                                      .out);
   for (const char* key :
        {"scenario", "tracks", "track_files", "format", "epoch", "begin_s", "end_s", "duration_s", "types",
         "emitters", "left_out", "records", "bad", "first_bad", "torn", "ignored", "notes"}) {
     EXPECT_TRUE(result.contains(key)) << key;
   }
   EXPECT_EQ(result["bad"], 0);
-  const ProgramResult checked = run({"validate", folder / "b.yaml"});
-  EXPECT_EQ(checked.status, 0) << checked.out;
+  runWell({"validate", folder / "b.yaml"});
 }
 
 TEST(Recordings, TableTellsWhatWasLeftOut) {
@@ -46,8 +43,7 @@ TEST(Recordings, TableTellsWhatWasLeftOut) {
       "a.acmi",
       "FileType=text/acmi/tacview\nFileVersion=2.2\n1,T=5|52|0,Type=Sea+Watercraft,Name=Boat,Fuel=3\n"
       "2,T=5|52|0,Type=Navaid+Static+Bullseye\n#10\n1,T=5.01|52|0\nzzz\n#20\n1,T=5.02");
-  const ProgramResult result = run({"import", file, "-o", folder / "b.yaml"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell({"import", file, "-o", folder / "b.yaml"});
   EXPECT_THAT(result.out, HasSubstr("left out: scenery"));
   EXPECT_THAT(result.out, HasSubstr("navigation radar"));
   EXPECT_THAT(result.out,
@@ -60,19 +56,15 @@ TEST(Recordings, FaultsNameFileValueAndRemedy) {
   const TemporaryFolder folder;
   const std::string other = folder.write("a.txt", "hello\n");
   const std::string out = folder / "b.yaml";
-  const auto errorOf = [](const Arguments& arguments, int status) {
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
-  };
-  EXPECT_THAT(errorOf({"import", other, "-o", out}, 3), HasSubstr("a.txt: no recording of a known format"));
-  EXPECT_THAT(errorOf({"import", folder / "none", "-o", out}, 3),
+  EXPECT_THAT(errorOfRun({"import", other, "-o", out}, 3),
+              HasSubstr("a.txt: no recording of a known format"));
+  EXPECT_THAT(errorOfRun({"import", folder / "none", "-o", out}, 3),
               HasSubstr("none: cannot read: no such file"));
-  EXPECT_THAT(errorOf({"import", other, "-o", out, "--times", "5"}, 2),
+  EXPECT_THAT(errorOfRun({"import", other, "-o", out, "--times", "5"}, 2),
               HasSubstr("--times '5' is not BEGIN:END"));
-  EXPECT_THAT(errorOf({"import", other, "-o", out, "--region", "95,0,10"}, 2),
+  EXPECT_THAT(errorOfRun({"import", other, "-o", out, "--region", "95,0,10"}, 2),
               HasSubstr("--region '95,0,10' is not auto"));
-  EXPECT_THAT(errorOf({"export", shippedScenario("quick.yaml"), "-o", folder / "a.hla"}, 2),
+  EXPECT_THAT(errorOfRun({"export", shippedScenario("quick.yaml"), "-o", folder / "a.hla"}, 2),
               HasSubstr("it ends in .zip.acmi, .acmi, .pcap, .asi"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }
@@ -91,9 +83,8 @@ TEST(Recordings, FilesThatExistAreReplacedOnlyWithForce) {
     const std::vector<std::string> files = folder.files();
     std::filesystem::create_directories(std::filesystem::path(file).parent_path());
     writeFile(file, "mine\n");
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_THAT(result.err, HasSubstr(file + " exists; --force replaces it, another --output keeps it"));
+    EXPECT_THAT(errorOfRun(arguments, 2),
+                HasSubstr(file + " exists; --force replaces it, another --output keeps it"));
     EXPECT_EQ(readFile(file), "mine\n");
     arguments.emplace_back("--force");
     EXPECT_EQ(run(arguments).status, 0);
@@ -110,9 +101,8 @@ TEST(Recordings, FilesThatExistAreReplacedOnlyWithForce) {
 TEST(Recordings, CoverageIsAddedToCzml) {
   const TemporaryFolder folder;
   const std::string file = folder / "a.czml";
-  const ProgramResult result = run({"export", shippedScenario("jamming.yaml"), "-o", file, "--coverage",
-                                    "agl:150", "--set", "region.dims=[24,24,8]"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  runWell({"export", shippedScenario("jamming.yaml"), "-o", file, "--coverage", "agl:150", "--set",
+           "region.dims=[24,24,8]"});
   int outlines = 0, beams = 0, documents = 0;
   for (const json& packet : json::parse(readFile(file))) {
     const std::string id = packet["id"];
@@ -127,10 +117,10 @@ TEST(Recordings, CoverageIsAddedToCzml) {
   EXPECT_EQ(beams, 2);
   EXPECT_GE(outlines, 11) << "one for each time at least";
   EXPECT_EQ(folder.files().size(), 2u) << "the document and its emitter database";
-  const ProgramResult other =
-      run({"export", shippedScenario("jamming.yaml"), "-o", folder / "a.kml", "--coverage", "agl:150"});
-  EXPECT_EQ(other.status, 2);
-  EXPECT_THAT(other.err, HasSubstr("--coverage is written into .czml alone"));
+  EXPECT_THAT(
+      errorOfRun({"export", shippedScenario("jamming.yaml"), "-o", folder / "a.kml", "--coverage", "agl:150"},
+                 2),
+      HasSubstr("--coverage is written into .czml alone"));
   EXPECT_EQ(
       run({"export", shippedScenario("jamming.yaml"), "-o", folder / "b.czml", "--coverage", "x"}).status, 2);
   EXPECT_EQ(folder.files().size(), 2u) << "nothing is written";
@@ -157,11 +147,9 @@ std::vector<double> numbersIn(const std::string& line) {
 
 TEST(Areps, LossesGiveTheProbabilitiesOfTheDiagram) {
   const TemporaryFolder folder;
-  const ProgramResult result =
-      run({"vertical", shippedScenario("jamming.yaml"), "--set", "emitters.stand-off jammer.enabled=false",
+  runWell({"vertical", shippedScenario("jamming.yaml"), "--set", "emitters.stand-off jammer.enabled=false",
            "--emitter", "search radar", "--azimuth", "30", "--grid", "12,8", "--quantity",
            "detection_probability", "--areps", folder / "areps", "-o", folder / "v.json"});
-  ASSERT_EQ(result.status, 0) << result.err;
   const std::string text = readFile(folder / "areps/search_radar_APM_30.txt");
   EXPECT_THAT(text, HasSubstr("Nrout = 12"));
   EXPECT_THAT(text, HasSubstr("Nzout = 7")) << "one less than the rows";
@@ -192,12 +180,11 @@ TEST(Areps, LossesGiveTheProbabilitiesOfTheDiagram) {
     }
   }
   EXPECT_GT(compared, 50);
-  const ProgramResult again =
-      run({"vertical", shippedScenario("jamming.yaml"), "--set", "emitters.stand-off jammer.enabled=false",
-           "--emitter", "search radar", "--azimuth", "30", "--compare",
-           folder / "areps/search_radar_APM_30.txt", "--json"});
-  ASSERT_EQ(again.status, 0) << again.err;
-  const json comparison = json::parse(again.out)["comparison"];
+  const json comparison = json::parse(
+      runWell({"vertical", shippedScenario("jamming.yaml"), "--set",
+               "emitters.stand-off jammer.enabled=false", "--emitter", "search radar", "--azimuth", "30",
+               "--compare", folder / "areps/search_radar_APM_30.txt", "--json"})
+          .out)["comparison"];
   EXPECT_EQ(comparison["points"], compared) << "its own points";
   EXPECT_LT(std::abs(comparison["mean_db"].get<double>()), 0.02);
   EXPECT_LE(std::abs(comparison["largest_db"].get<double>()), 0.051) << "it has tenths of a decibel";
@@ -205,12 +192,11 @@ TEST(Areps, LossesGiveTheProbabilitiesOfTheDiagram) {
 
 /// The field of a scenario's power density in a region, in dBW/m2.
 std::vector<float> fieldOf(const std::string& scenario, const std::string& folder) {
-  const ProgramResult result = run({"simulate", scenario, "--set",
-                                    "region={origin: {latitude_deg: 52, longitude_deg: 5}, size_m: [20000, "
-                                    "20000, 3000], dims: [24, 24, 6]}",
-                                    "--set", "output.quantities=[power_density_dbwm2]", "--times", "10",
-                                    "--format", "raw", "-o", folder});
-  EXPECT_EQ(result.status, 0) << result.err;
+  runWell({"simulate", scenario, "--set",
+           "region={origin: {latitude_deg: 52, longitude_deg: 5}, size_m: [20000, "
+           "20000, 3000], dims: [24, 24, 6]}",
+           "--set", "output.quantities=[power_density_dbwm2]", "--times", "10", "--format", "raw", "-o",
+           folder});
   std::vector<float> field;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.path().extension() != ".raw") continue;
@@ -259,8 +245,7 @@ output: {quantities: [power_density_dbwm2]}
     const std::string file = folder / (std::string("a") + ending);
     ASSERT_EQ(run({"export", before, "-o", file}).status, 0);
     const std::string after = folder / (std::string("back") + ending + ".yaml");
-    const ProgramResult imported = run({"import", file, "--emitters", file + ".emitters.yaml", "-o", after});
-    ASSERT_EQ(imported.status, 0) << imported.err;
+    runWell({"import", file, "--emitters", file + ".emitters.yaml", "-o", after});
     const std::vector<float> field = fieldOf(after, folder / (std::string("f") + ending));
     ASSERT_EQ(field.size(), expected.size()) << ending;
     float largest = 0;

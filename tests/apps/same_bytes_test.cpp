@@ -20,8 +20,7 @@ void expectSameBytes(const Arguments& arguments) {
       if (argument.compare(0, 3, "OUT") == 0) argument.replace(0, 3, folder->path().string());
       with.push_back(argument);
     }
-    const ProgramResult result = run(with);
-    ASSERT_EQ(result.status, 0) << result.err;
+    runWell(with);
   }
   ASSERT_FALSE(one.files().empty());
   ASSERT_EQ(one.files(), three.files());
@@ -73,10 +72,9 @@ measures:
 TEST(SameBytes, DoNotDependOnVariablesOfGdal) {
   const TemporaryFolder folder;
   const auto filesWith = [&](const std::string& name, const std::string& variables) {
-    const ProgramResult result = run({"coverage", quick(), "-o", folder / name, "--cell", "1000",
-                                      "--products", "covered,value", "--times", "0", "--format", "cog,gpkg"},
-                                     variables);
-    EXPECT_EQ(result.status, 0) << result.err;
+    runWell({"coverage", quick(), "-o", folder / name, "--cell", "1000", "--products", "covered,value",
+             "--times", "0", "--format", "cog,gpkg"},
+            variables);
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder / (name + "/maps")))
       files[entry.path().filename().string()] = readFile(entry.path());

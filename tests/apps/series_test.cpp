@@ -20,17 +20,14 @@ using testing::IsSupersetOf;
 using testing::Not;
 
 json infoOf(const std::string& file) {
-  const ProgramResult result = run({"info", file, "--json"});
-  EXPECT_EQ(result.status, 0) << result.err;
-  return json::parse(result.out);
+  return json::parse(runWell({"info", file, "--json"}).out);
 }
 
 TEST(Simulate, WritesExactlyEveryFormatOfEveryStep) {
   const TemporaryFolder folder;
   const ProgramResult result =
-      run({"simulate", quick(), "-o", folder / "s", "--format", "vdb,nvdb,vti,raw", "--times", "0:2:1",
-           "--quantity", "power_density_dbwm2,emitter_count", "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
+      runWell({"simulate", quick(), "-o", folder / "s", "--format", "vdb,nvdb,vti,raw", "--times", "0:2:1",
+               "--quantity", "power_density_dbwm2,emitter_count", "--json"});
   const std::vector<std::string> files = folder.files();
   for (const char* step : {"0001", "0002", "0003"}) {
     for (const char* ending : {".vdb", ".nvdb", ".vti"}) {
@@ -44,9 +41,8 @@ TEST(Simulate, WritesExactlyEveryFormatOfEveryStep) {
 
 TEST(Simulate, TakesItsScenarioAfterAListToo) {
   const TemporaryFolder folder;
-  const ProgramResult result = run({"simulate", "--format", "vdb,raw", "--quantity", "emitter_count", quick(),
-                                    "-o", folder / "s", "--times", "0:1:1"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  runWell({"simulate", "--format", "vdb,raw", "--quantity", "emitter_count", quick(), "-o", folder / "s",
+           "--times", "0:1:1"});
   EXPECT_THAT(folder.files(), Contains("s/quick_0001.vdb"));
 }
 
@@ -65,9 +61,7 @@ TEST(Simulate, RefusesAFolderThatHoldsASeries) {
   const TemporaryFolder folder;
   const Arguments arguments{"simulate", quick(), "-o", folder / "s", "--times", "0:1:1"};
   ASSERT_EQ(run(arguments).status, 0);
-  const ProgramResult again = run(arguments);
-  EXPECT_EQ(again.status, 2);
-  EXPECT_THAT(again.err, HasSubstr("--resume"));
+  EXPECT_THAT(errorOfRun(arguments, 2), HasSubstr("--resume"));
   Arguments force = arguments;
   force.emplace_back("--force");
   EXPECT_EQ(run(force).status, 0);
@@ -85,9 +79,8 @@ TEST(Simulate, ForceRemovesPreviousSeries) {
 TEST(Simulate, ResumeRefusesOtherOptionsByName) {
   const TemporaryFolder folder;
   ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0:1:1"}).status, 0);
-  const ProgramResult result = run({"simulate", quick(), "-o", folder / "s", "--times", "0:2:1", "--resume"});
-  EXPECT_EQ(result.status, 3);
-  EXPECT_THAT(result.err, HasSubstr("another times"));
+  EXPECT_THAT(errorOfRun({"simulate", quick(), "-o", folder / "s", "--times", "0:2:1", "--resume"}, 3),
+              HasSubstr("another times"));
 }
 
 TEST(Simulate, SLOW_ASeriesThatWasKilledResumesToTheSameFiles) {
@@ -103,9 +96,7 @@ TEST(Simulate, SLOW_ASeriesThatWasKilledResumesToTheSameFiles) {
 
   Arguments resume = arguments;
   resume.insert(resume.end(), {"--resume", "--json"});
-  const ProgramResult resumed = run(resume);
-  ASSERT_EQ(resumed.status, 0) << resumed.err;
-  const json report = json::parse(resumed.out);
+  const json report = json::parse(runWell(resume).out);
   EXPECT_LT(report.at("steps_computed"), report.at("steps"));
 
   Arguments whole = arguments;
@@ -133,10 +124,9 @@ TEST(Simulate, CtrlCLeavesWholeFilesAndStatus130) {
 TEST(Simulate, FullDiskIsOneErrorAndKeepsFinishedFiles) {
   const TemporaryFolder folder;
   // Files may grow to 64 KiB: series.json fits, a volume does not.
-  const ProgramResult result =
-      run({"simulate", quick(), "-o", folder / "s", "--format", "raw"}, "trap '' XFSZ; ulimit -f 128;");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("emscape: error: "));
+  EXPECT_THAT(errorOfRun({"simulate", quick(), "-o", folder / "s", "--format", "raw"}, 1,
+                         "trap '' XFSZ; ulimit -f 128;"),
+              HasSubstr("emscape: error: "));
   EXPECT_THAT(folder.files(), ElementsAre("s/series.json"));
 }
 
@@ -175,8 +165,7 @@ TEST(Simulate, ResumeRestoresAFileThatWasDeleted) {
   const std::string before = readFile(folder / "s/quick_0003.vdb");
   std::filesystem::remove(folder / "s/quick_0003.vdb");
   arguments.insert(arguments.end(), {"--resume", "--json"});
-  const ProgramResult result = run(arguments);
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell(arguments);
   EXPECT_EQ(json::parse(result.out).at("steps_computed"), 1);
   EXPECT_THAT(result.err, HasSubstr("computed again"));
   EXPECT_TRUE(readFile(folder / "s/quick_0003.vdb") == before);
@@ -184,8 +173,7 @@ TEST(Simulate, ResumeRestoresAFileThatWasDeleted) {
 
 TEST(Simulate, WithoutTerminalItPrintsWorkAndBackendOnce) {
   const TemporaryFolder folder;
-  const ProgramResult result = run({"simulate", quick(), "-o", folder / "s"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell({"simulate", quick(), "-o", folder / "s"});
   const auto occurrences = [&](const std::string& text) {
     int count = 0;
     for (std::size_t at = result.err.find(text); at != std::string::npos; at = result.err.find(text, at + 1))
@@ -199,9 +187,8 @@ TEST(Simulate, WithoutTerminalItPrintsWorkAndBackendOnce) {
 
 TEST(Simulate, EqualWarningsOfSeveralEmittersAreOneLine) {
   const TemporaryFolder folder;
-  const ProgramResult result = run(
+  const ProgramResult result = runWell(
       {"simulate", shippedScenario("jacksboro.yaml"), "-o", folder / "s", "--times", "0", "--format", "raw"});
-  ASSERT_EQ(result.status, 0) << result.err;
   const std::size_t first = result.err.find("closer than the far-field distance");
   ASSERT_NE(first, std::string::npos) << result.err;
   EXPECT_EQ(result.err.find("closer than the far-field distance", first + 1), std::string::npos)
@@ -215,9 +202,8 @@ TEST(Simulate, SLOW_AWarningOfEachStepNamesItsEmitterOnceWithTheRangeOfItsNumber
   scenario.replace(scenario.find(site), site.size(), "track: {file: track.csv}");
   folder.write("track.csv",
                "t_s,latitude_deg,longitude_deg,height_agl_m\n0,44.45,-71.6,300\n10,44.56,-71.4,300\n");
-  const ProgramResult result = run({"simulate", folder.write("moving.yaml", scenario), "-o", folder / "s",
-                                    "--times", "0:4", "--format", "raw"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell({"simulate", folder.write("moving.yaml", scenario), "-o", folder / "s",
+                                        "--times", "0:4", "--format", "raw"});
   EXPECT_THAT(result.err,
               testing::ContainsRegex("warning: emitter 'transmitter': 'diffraction': distance [0-9.]+ to "
                                      "[0-9.]+ km is outside 0.1..1000 km"));
@@ -233,9 +219,8 @@ TEST(Simulate, AWarningOfManyEmittersNamesFiveAndCountsTheOthers) {
                 ", platform: mast, kind: transmitter, frequency_hz: 1e8, " +
                 "power_w: 1000, antenna: {pattern: isotropic}, propagation: diffraction}\n";
   }
-  const ProgramResult result = run({"simulate", folder.write("many.yaml", scenario), "-o", folder / "s",
-                                    "--times", "0", "--format", "raw", "--set", "region.dims=[8, 8, 2]"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell({"simulate", folder.write("many.yaml", scenario), "-o", folder / "s",
+                                        "--times", "0", "--format", "raw", "--set", "region.dims=[8, 8, 2]"});
   EXPECT_THAT(result.err,
               testing::ContainsRegex(
                   "warning: emitters ('[a-z0-9]+', ){4}'[a-z0-9]+' and 3 others: 'diffraction': "));
@@ -273,9 +258,7 @@ TEST(Simulate, ASecondProcessIsRefusedWhileOneWritesTheFolder) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   Arguments second = arguments;
   second.emplace_back("--force");
-  const ProgramResult refused = run(second);
-  EXPECT_EQ(refused.status, 1);
-  EXPECT_THAT(refused.err, HasSubstr("another process writes this folder: process "));
+  EXPECT_THAT(errorOfRun(second, 1), HasSubstr("another process writes this folder: process "));
   first.signal(SIGINT);
   EXPECT_EQ(first.wait().status, 130);
   EXPECT_THAT(folder.files(), Not(Contains(HasSubstr("lock"))));
@@ -289,9 +272,7 @@ TEST(Simulate, AFolderThatIsAFileIsAnError) {
 
 TEST(Render, DrawsAScenarioAsOnePicture) {
   const TemporaryFolder folder;
-  const ProgramResult result =
-      run({"render", quick(), "-o", folder / "p.png", "--size", "160x120", "--times", "2"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  runWell({"render", quick(), "-o", folder / "p.png", "--size", "160x120", "--times", "2"});
   const std::string png = readFile(folder / "p.png");
   ASSERT_GT(png.size(), 24U);
   EXPECT_EQ(png.substr(1, 3), "PNG");
@@ -304,8 +285,7 @@ TEST(Render, DrawsASeriesOfVolumesLikeTheScenarioThatItCameFrom) {
   const Arguments look{"--size", "96x72", "--range", "-120:0", "--times", "0:2:1"};
   const auto render = [&](Arguments arguments) {
     arguments.insert(arguments.end(), look.begin(), look.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 0) << result.err;
+    runWell(arguments);
   };
   ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--format", "vdb,vti"}).status, 0);
   render({"render", quick(), "-o", folder / "direct"});
@@ -322,9 +302,8 @@ TEST(Render, DrawsASeriesOfVolumesLikeTheScenarioThatItCameFrom) {
 TEST(Render, WritesFramesAndVideoInOneGo) {
   if (std::system("command -v ffmpeg >/dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
   const TemporaryFolder folder;
-  const ProgramResult result = run(
+  runWell(
       {"render", quick(), "-o", folder / "v.mp4", "-o", folder / "f", "--size", "65x49", "--times", "0:2:1"});
-  ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(folder.files(),
               ElementsAre("f/quick_0001.png", "f/quick_0002.png", "f/quick_0003.png", "v.mp4"));
   EXPECT_EQ(readFile(folder / "v.mp4").substr(4, 4), "ftyp");
@@ -334,11 +313,9 @@ TEST(Render, AVideoThatDoesNotFitOnTheDiskIsAnErrorAndNoFile) {
   if (std::system("command -v ffmpeg >/dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
   const TemporaryFolder folder;
   // Files may grow to 4 KiB.
-  const ProgramResult result =
-      run({"render", quick(), "-o", folder / "v.mp4", "--size", "320x240", "--times", "0:4:1"},
-          "trap '' XFSZ; ulimit -f 8;");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("v.mp4: ffmpeg"));
+  EXPECT_THAT(errorOfRun({"render", quick(), "-o", folder / "v.mp4", "--size", "320x240", "--times", "0:4:1"},
+                         1, "trap '' XFSZ; ulimit -f 8;"),
+              HasSubstr("v.mp4: ffmpeg"));
   EXPECT_TRUE(folder.files().empty());
 }
 
@@ -363,18 +340,15 @@ TEST(Render, RemovesTemporariesOfKilledProcess) {
   first.signal(SIGKILL);
   ASSERT_EQ(first.wait().status, 128 + SIGKILL);
   ASSERT_TRUE(hasParts());
-  const ProgramResult result = run({"render", quick(), "-o", folder / "out/p.png", "--size", "64x48"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell({"render", quick(), "-o", folder / "out/p.png", "--size", "64x48"});
   EXPECT_FALSE(hasParts());
   EXPECT_THAT(result.err, HasSubstr("drawing 1 picture of 64x48 into "));
 }
 
 TEST(Render, WithoutFfmpegAVideoIsAClearErrorAndNoFile) {
   const TemporaryFolder folder;
-  const ProgramResult result =
-      run({"render", quick(), "-o", folder / "v.mp4", "--size", "64x48"}, "PATH=/nowhere;");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, HasSubstr("needs the program ffmpeg"));
+  EXPECT_THAT(errorOfRun({"render", quick(), "-o", folder / "v.mp4", "--size", "64x48"}, 1, "PATH=/nowhere;"),
+              HasSubstr("needs the program ffmpeg"));
   EXPECT_TRUE(folder.files().empty());
 }
 

@@ -35,8 +35,7 @@ measures:
 
 /// Runs to the end, and expects success.
 void compute(const Arguments& arguments) {
-  const ProgramResult result = run(arguments);
-  ASSERT_EQ(result.status, 0) << result.err;
+  runWell(arguments);
 }
 
 void expectSameResults(const TemporaryFolder& folder, const std::string& a, const std::string& b) {
@@ -55,9 +54,8 @@ TEST(Study, SLOW_ProcessesAndPartsGiveTheBytesOfOneProcess) {
   for (const char* part : {"3/5", "1/5", "5/5", "2/5"}) {
     compute({"study", file, "-o", folder / "parts", "--part", part, "--quiet"});
   }
-  const ProgramResult early = run({"study", file, "-o", folder / "parts", "--merge"});
-  EXPECT_EQ(early.status, 3);
-  EXPECT_THAT(early.err, AllOf(HasSubstr("1 of 5 parts are missing: 4"), HasSubstr("--resume")));
+  EXPECT_THAT(errorOfRun({"study", file, "-o", folder / "parts", "--merge"}, 3),
+              AllOf(HasSubstr("1 of 5 parts are missing: 4"), HasSubstr("--resume")));
   compute({"study", file, "-o", folder / "parts", "--merge", "--partial"});
   EXPECT_NE(readFile(folder / "parts/results.csv"), readFile(folder / "one/results.csv"));
   compute({"study", file, "-o", folder / "parts", "--part", "4/5"});
@@ -72,9 +70,8 @@ TEST(Study, SLOW_ResumedStudyComputesMissingVariants) {
   const std::string file = study(folder);
   compute({"study", file, "-o", folder / "whole"});
   compute({"study", file, "-o", folder / "out"});
-  const ProgramResult again = run({"study", file, "-o", folder / "out"});
-  EXPECT_EQ(again.status, 2);
-  EXPECT_THAT(again.err, HasSubstr("holds 8 of 8 parts of this study; --merge writes"));
+  EXPECT_THAT(errorOfRun({"study", file, "-o", folder / "out"}, 2),
+              HasSubstr("holds 8 of 8 parts of this study; --merge writes"));
   const auto kept = std::filesystem::last_write_time(folder / "out/parts/part_00001.csv");
   std::filesystem::remove(folder / "out/parts/part_00004.json");
   std::filesystem::remove(folder / "out/parts/part_00007.csv");
@@ -83,10 +80,10 @@ TEST(Study, SLOW_ResumedStudyComputesMissingVariants) {
   EXPECT_EQ(std::filesystem::last_write_time(folder / "out/parts/part_00001.csv"), kept);
   expectSameResults(folder, "whole", "out");
 
-  const ProgramResult other =
-      run({"study", file, "-o", folder / "out", "--resume", "--set", "emitters.search radar.power_w=3"});
-  EXPECT_EQ(other.status, 3);
-  EXPECT_THAT(other.err, HasSubstr("belongs to another study"));
+  EXPECT_THAT(
+      errorOfRun(
+          {"study", file, "-o", folder / "out", "--resume", "--set", "emitters.search radar.power_w=3"}, 3),
+      HasSubstr("belongs to another study"));
 }
 
 /// Processes whose parent is one of ours.
@@ -208,10 +205,10 @@ TEST(Study, KeepsVolumesOfEachVariant) {
                                    name.find("/field_t40s.vdb") != std::string::npos;
                           }),
             1);
-  const ProgramResult other = run({"study", file, "-o", folder / "out", "--keep", "maps", "--part", "2/40",
-                                   "--set", "region.dims=[20, 20, 10]"});
-  EXPECT_EQ(other.status, 3);
-  EXPECT_THAT(other.err, HasSubstr("keeps volumes of each variant, not maps"));
+  EXPECT_THAT(errorOfRun({"study", file, "-o", folder / "out", "--keep", "maps", "--part", "2/40", "--set",
+                          "region.dims=[20, 20, 10]"},
+                         3),
+              HasSubstr("keeps volumes of each variant, not maps"));
 }
 
 TEST(Study, SLOW_AFullDiskEndsTheStudyAndItCanBeResumed) {
@@ -220,10 +217,9 @@ TEST(Study, SLOW_AFullDiskEndsTheStudyAndItCanBeResumed) {
   compute({"study", file, "-o", folder / "whole"});
   compute({"study", file, "-o", folder / "out", "--part", "1/2"});  // writes the manifest
   for (const char* jobs : {"1", "2"}) {
-    const ProgramResult result =
-        run({"study", file, "-o", folder / "out", "--resume", "--jobs", jobs}, "trap '' XFSZ; ulimit -f 1;");
-    EXPECT_EQ(result.status, 1) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("part_00002."));
+    EXPECT_THAT(errorOfRun({"study", file, "-o", folder / "out", "--resume", "--jobs", jobs}, 1,
+                           "trap '' XFSZ; ulimit -f 1;"),
+                HasSubstr("part_00002."));
   }
   for (const std::string& left : folder.files()) EXPECT_THAT(left, testing::Not(HasSubstr(".part-")));
   compute({"study", file, "-o", folder / "out", "--resume"});
@@ -232,9 +228,7 @@ TEST(Study, SLOW_AFullDiskEndsTheStudyAndItCanBeResumed) {
 
 TEST(Study, PlanListsWork) {
   const TemporaryFolder folder;
-  const ProgramResult result = run({"study", study(folder), "--plan", "--json", "--quiet"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json plan = json::parse(result.out);
+  const json plan = json::parse(runWell({"study", study(folder), "--plan", "--json", "--quiet"}).out);
   EXPECT_EQ(plan["variants"], 40);
   EXPECT_EQ(plan["parts"], 8);
   EXPECT_EQ(plan["parameters"][0]["class"], "power");
@@ -256,8 +250,7 @@ sweep:
 measures:
   - {name: seen again, product: revisit, height: "agl:300"}
 )");
-  const ProgramResult result = run({"study", file, "-o", folder / "out"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell({"study", file, "-o", folder / "out"});
   EXPECT_THAT(result.out, HasSubstr("seen again               no value in any variant\n"));
 }
 
@@ -287,11 +280,7 @@ TEST(Study, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const std::string file = study(folder);
   const auto errorOf = [&](const Arguments& more, int status) {
-    Arguments arguments{"study", file};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
+    return errorOfRun(joined({"study", file}, more), status);
   };
   EXPECT_THAT(errorOf({}, 2), HasSubstr("--output is required"));
   const std::string out = folder / "out";
@@ -317,11 +306,7 @@ TEST(Study, DoesNotReplaceFilesOfTheStudy) {
                       "\ntimes: 40\ncell_m: 1000\nsites: {platform: ridge site, candidates: " + candidates +
                       "}\nmeasures: [{name: covered, height: \"agl:300\"}]\n");
   };
-  const auto refused = [&](const Arguments& arguments) {
-    const ProgramResult result = run(arguments);
-    EXPECT_EQ(result.status, 2) << result.err;
-    return result.err;
-  };
+  const auto refused = [&](const Arguments& arguments) { return errorOfRun(arguments, 2); };
   EXPECT_THAT(refused({"study", studyOf("results.csv"), "-o", folder.path()}),
               HasSubstr("results.csv is a file that the study names"));
   const std::string file = studyOf("sites.csv");

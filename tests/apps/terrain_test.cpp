@@ -85,8 +85,7 @@ receivers:
 
 TEST_F(TerrainProgram, DescribesAndDrawsFilesAndScenarios) {
   const std::string tile = sourceFile("scenarios/data/jacksboro.tif");
-  const ProgramResult result = run({"terrain", tile, "--json", "-o", folder_ / "a.png"});
-  ASSERT_EQ(result.status, 0) << result.err;
+  const ProgramResult result = runWell({"terrain", tile, "--json", "-o", folder_ / "a.png"});
   EXPECT_EQ(readFile(folder_ / "a.png").substr(1, 3), "PNG");
   const json report = json::parse(result.out);
   const json& file = report.at("files").at(0);
@@ -147,10 +146,10 @@ TEST_F(TerrainProgram, MissingTerrainIsTreatedAlikeBySubcommands) {
 
 TEST_F(TerrainProgram, AMapOfNothingKnownIsAnErrorThatOffersTheOtherSign) {
   const std::string file = scenario("", 84.2);
-  const ProgramResult maps = run({"coverage", file, "-o", folder_ / "maps", "--heights", "msl:1500",
-                                  "--quantity", "power_density_dbwm2", "--threshold", "-60"});
-  EXPECT_EQ(maps.status, 3);
-  EXPECT_THAT(maps.err, HasSubstr("perhaps longitude has the other sign"));
+  EXPECT_THAT(errorOfRun({"coverage", file, "-o", folder_ / "maps", "--heights", "msl:1500", "--quantity",
+                          "power_density_dbwm2", "--threshold", "-60"},
+                         3),
+              HasSubstr("perhaps longitude has the other sign"));
   EXPECT_THAT(run({"validate", file}).out, HasSubstr("perhaps longitude has the other sign"));
   EXPECT_THAT(run({"simulate", file, "-o", folder_ / "out"}).err,
               HasSubstr("perhaps longitude has the other sign"));

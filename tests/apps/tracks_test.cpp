@@ -17,24 +17,19 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 Arguments vertical(const Arguments& more) {
-  Arguments arguments{"vertical", shippedScenario("jacksboro.yaml"), "--azimuth", "30,150", "--grid",
-                      "60,40"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"vertical", shippedScenario("jacksboro.yaml"), "--azimuth", "30,150", "--grid", "60,40"},
+                more);
 }
 
 Arguments exposure(const Arguments& more) {
-  Arguments arguments{"exposure", shippedScenario("links.yaml"), "--times", "0:60:10"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
+  return joined({"exposure", shippedScenario("links.yaml"), "--times", "0:60:10"}, more);
 }
 
 /// Runs twice, into two folders; the four files must be the same.
 void expectSameTwice(const TemporaryFolder& folder, const std::function<Arguments(const std::string&)>& of) {
   for (const char* run_name : {"one", "two"}) {
     std::filesystem::create_directories(folder / run_name);
-    const ProgramResult result = run(of(folder / run_name));
-    ASSERT_EQ(result.status, 0) << result.err;
+    runWell(of(folder / run_name));
   }
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "one")) {
@@ -67,10 +62,9 @@ TEST(Vertical, WritesFilesOfEachKindAndTheSameOnesAgain) {
 
 TEST(Vertical, ABlakeChartHasTheContourOfFreeSpace) {
   const TemporaryFolder folder;
-  const ProgramResult result = run(vertical({"--emitter", "search radar", "--blake", "--range", "100000",
-                                             "-o", folder / "b.svg", "--json", "--quiet"}));
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json chart = json::parse(result.out);
+  const json chart = json::parse(runWell(vertical({"--emitter", "search radar", "--blake", "--range",
+                                                   "100000", "-o", folder / "b.svg", "--json", "--quiet"}))
+                                     .out);
   EXPECT_TRUE(chart["smooth_earth"]);
   EXPECT_NEAR(chart["station_msl_m"], 15, 0.01) << "above the smooth surface";
   EXPECT_GT(chart["azimuths"][0]["free_space"].size(), 0u);
@@ -79,11 +73,7 @@ TEST(Vertical, ABlakeChartHasTheContourOfFreeSpace) {
 
 TEST(Vertical, RefusesInvalidOptions) {
   const TemporaryFolder folder;
-  const auto errorOf = [&](const Arguments& more, int status) {
-    const ProgramResult result = run(vertical(more));
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
-  };
+  const auto errorOf = [&](const Arguments& more, int status) { return errorOfRun(vertical(more), status); };
   const std::string file = folder / "a.png";
   EXPECT_THAT(errorOf({"--emitter", "radar", "-o", file}, 2), HasSubstr("no emitter 'radar'"));
   EXPECT_THAT(errorOf({"--emitter", "jammer", "-o", file}, 2), HasSubstr("--threshold"));
@@ -121,9 +111,7 @@ TEST(Exposure, RefusesInvalidOptions) {
   const auto errorOf = [&](const Arguments& more, int status) {
     Arguments arguments = more;
     arguments.insert(arguments.end(), {"-o", folder / "a.json"});
-    const ProgramResult result = run(exposure(arguments));
-    EXPECT_EQ(result.status, status) << result.err;
-    return result.err;
+    return errorOfRun(exposure(arguments), status);
   };
   EXPECT_THAT(errorOf({"--platform", "ship"}, 2), HasSubstr("no platform 'ship'"));
   EXPECT_THAT(errorOf({"--platform", "drone", "--rcs-target", "ship"}, 2), HasSubstr("no target 'ship'"));

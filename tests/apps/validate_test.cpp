@@ -53,9 +53,10 @@ TEST_F(Validate, ReportsMemoryOfTheField) {
 TEST_F(Validate, EstimatesTimeByVoxelsModelsAndThreads) {
   const std::string scenario = shippedScenario("jacksboro.yaml");
   const auto workOf = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"validate", scenario, "--json", "--threads", "1", "--set", "duration_s=0"};
-    words.insert(words.end(), more.begin(), more.end());
-    return json::parse(run(words).out).at("work");
+    return json::parse(
+               run(joined({"validate", scenario, "--json", "--threads", "1", "--set", "duration_s=0"}, more))
+                   .out)
+        .at("work");
   };
   const json coarse = workOf({"--set", "region.dims=[40, 40, 20]"});
   const json fine = workOf({"--set", "region.dims=[80, 80, 40]"});
@@ -131,9 +132,8 @@ TEST_F(Validate, ChecksTheEditsOfTheCommandLine) {
   const ProgramResult value = run({"validate", file, "--set", "atmosphere.k_factor=99", "--json"});
   EXPECT_EQ(value.status, 3);
   EXPECT_EQ(json::parse(value.out).at("problems").at(0).at("file"), "atmosphere.k_factor=99");
-  const ProgramResult usage = run({"validate", file, "--set", "atmosphere.k_factor"});
-  EXPECT_EQ(usage.status, 2);
-  EXPECT_THAT(usage.err, HasSubstr("write PATH=VALUE"));
+  EXPECT_THAT(errorOfRun({"validate", file, "--set", "atmosphere.k_factor"}, 2),
+              HasSubstr("write PATH=VALUE"));
 }
 
 TEST_F(Validate, FindsRegionsBeyondTheElevationData) {
@@ -186,9 +186,8 @@ emitters:
   EXPECT_EQ(result.status, 3);
   EXPECT_THAT(result.out, HasSubstr("error: emitter 'beacon': 'parabolic_equation': antenna 0 m above the "
                                     "ground; expected above 0"));
-  const ProgramResult path = run({"profile", file, "--emitter", "beacon", "--to", "36.05,-60,20"});
-  EXPECT_EQ(path.status, 3);
-  EXPECT_THAT(path.err, HasSubstr("emitter 'beacon': 'parabolic_equation': antenna 0 m above the ground"));
+  EXPECT_THAT(errorOfRun({"profile", file, "--emitter", "beacon", "--to", "36.05,-60,20"}, 3),
+              HasSubstr("emitter 'beacon': 'parabolic_equation': antenna 0 m above the ground"));
   EXPECT_EQ(run({"validate", file, "--set", "platforms.ship.position.height_msl_m=10"}).status, 0);
 }
 

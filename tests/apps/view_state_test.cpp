@@ -13,9 +13,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 ProgramResult render(const Arguments& more) {
-  Arguments arguments{"render", quick()};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return run(arguments);
+  return run(joined({"render", quick()}, more));
 }
 
 const Arguments kLook{"--size",         "200x150",
@@ -28,11 +26,6 @@ const Arguments kLook{"--size",         "200x150",
                       "--exaggeration", "2.5",
                       "--emitters",     "off",
                       "--shading"};
-
-Arguments with(Arguments arguments, const Arguments& more) {
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  return arguments;
-}
 
 TEST(ViewState, AnIsosurfaceOutsideOfTheValuesIsAWarning) {
   const TemporaryFolder folder;
@@ -49,7 +42,7 @@ TEST(ViewState, AnIsosurfaceOutsideOfTheValuesIsAWarning) {
 TEST(ViewState, DrawsThePictureThatTheOptionsDrew) {
   const TemporaryFolder folder;
   const ProgramResult saved =
-      render(with(kLook, {"-o", folder / "options.png", "--save-state", folder / "a.view.json"}));
+      render(joined(kLook, {"-o", folder / "options.png", "--save-state", folder / "a.view.json"}));
   ASSERT_EQ(saved.status, 0) << saved.err;
   const ProgramResult drawn = render({"-o", folder / "state.png", "--state", folder / "a.view.json"});
   ASSERT_EQ(drawn.status, 0) << drawn.err;
@@ -72,12 +65,12 @@ TEST(ViewState, DrawsThePictureThatTheOptionsDrew) {
 
 TEST(ViewState, OptionsThatAreGivenCountMore) {
   const TemporaryFolder folder;
-  ASSERT_EQ(render(with(kLook, {"--save-state", folder / "a.view.json"})).status, 0);
+  ASSERT_EQ(render(joined(kLook, {"--save-state", folder / "a.view.json"})).status, 0);
   const Arguments other{"--size",  "120x90", "--theme", "dark",
                         "--times", "1",      "--set",   "emitters.radar.power_w=5"};
-  ASSERT_EQ(
-      render(with(other, {"--state", folder / "a.view.json", "--save-state", folder / "b.view.json"})).status,
-      0);
+  ASSERT_EQ(render(joined(other, {"--state", folder / "a.view.json", "--save-state", folder / "b.view.json"}))
+                .status,
+            0);
   const json state = json::parse(readFile(folder / "b.view.json"));
   EXPECT_EQ(state["size"], json({120, 90}));
   EXPECT_EQ(state["theme"], "dark");

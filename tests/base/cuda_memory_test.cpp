@@ -4,9 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
-#include <functional>
-#include <limits>
 #include <numeric>
 
 #include "tests/base/lose_device.h"

@@ -11,7 +11,6 @@
 #include "emfield/ground/read_posts.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
-#include "emscape/base/units.h"
 #include "emscape/emfield/link/path_profile.h"
 #include "tests/emfield/made_terrain.h"
 

@@ -141,8 +141,7 @@ TEST(RadarChannels, OnlyChangedOnesAreComputedAgain) {
   jammer.active_s = {{0, 3}};
   const auto scenario = duel(radar, jammer, 0, 60e3);
   scenario->output.quantities = {"snr_db", "jammer_to_signal_db"};
-  FieldSolver solver(scenario, nullptr, {});
-  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField solver(scenario);
   const auto before = solver.volumes();
   solver.update(scenario::snapshotAt(scenario, nullptr, 1));
   EXPECT_NE(solver.volumes()[0].dense(), before[0].dense()) << "the beam turned";

@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <random>
 
+#include "tests/emfield/edited_battlefield.h"
 #include "tests/emfield/made_terrain.h"
-#include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"
 #include "tests/support/gpu.h"
 #include "tests/support/on_backends.h"
@@ -16,68 +15,32 @@ namespace emscape::emfield {
 namespace {
 
 using namespace emscape::emfield::testing;
-using propagation::PropagationModel;
 using scenario::CombineMode;
-using scenario::Emitter;
-using scenario::EmitterKind;
-using scenario::Scenario;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-
-constexpr double kLatitude_deg = 45, kLongitude_deg = 7;
-
-using Random = std::mt19937;
-
-double between(Random& random, double low, double high) {
-  return std::uniform_real_distribution<double>(low, high)(random);
-}
-int below(Random& random, std::size_t count) {
-  return std::uniform_int_distribution<int>(0, static_cast<int>(count) - 1)(random);
-}
-template <class T>
-T oneOf(Random& random, const std::vector<T>& values) {
-  return values[static_cast<std::size_t>(below(random, values.size()))];
-}
-
-GeodeticPosition somewhere(Random& random) {
-  return {kLatitude_deg + between(random, -0.06, 0.06), kLongitude_deg + between(random, -0.08, 0.08),
-          between(random, 1800, 3000)};
-}
-
-scenario::AntennaPtr someAntenna(Random& random) {
-  switch (below(random, 3)) {
-    case 0:
-      return scenario::makeIsotropic();
-    case 1:
-      return scenario::makeSinc(30, between(random, 2, 8), between(random, 2, 8), -40);
-    default:
-      return scenario::makeGaussian(between(random, 20, 35), between(random, 2, 20), 10, -35);
-  }
-}
 
 /// One kind of edit, named by the key that it changes. Solvers may refuse the result.
-struct Edit {
-  const char* key;
-  std::function<void(Scenario&, Emitter&, Random&)> apply;
-};
+using Edit = std::pair<const char*, std::function<void(Scenario&, Emitter&, Random&)>>;
+
+/// An edit of a scenario `s` or its emitter `e` that draws one of several values, or a number between two.
+#define CHOICE(value, ...)                                                                \
+  Edit(#value, []([[maybe_unused]] Scenario& s, [[maybe_unused]] Emitter& e, Random& r) { \
+    using Value [[maybe_unused]] = decltype(value);                                       \
+    value = oneOf(r, std::vector<decltype(value)>{__VA_ARGS__});                          \
+  })
+#define NUMBER(value, low, high)                                                          \
+  Edit(#value, []([[maybe_unused]] Scenario& s, [[maybe_unused]] Emitter& e, Random& r) { \
+    value = between(r, low, high);                                                        \
+  })
 
 const std::vector<Edit>& emitterEdits() {
   using propagation::Polarization;
   static const std::vector<Edit> edits{
       {"name", [](Scenario&, Emitter& e, Random&) { e.name += "'"; }},
-      {"power_w", [](Scenario&, Emitter& e, Random& r) { e.power_w = between(r, 1, 1e5); }},
-      {"losses_db", [](Scenario&, Emitter& e, Random& r) { e.losses_db = between(r, 0, 5); }},
-      {"frequency_hz",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.frequency_hz = oneOf(r, std::vector{4e8, 1.2e9, 3e9, 9e9});
-       }},
-      {"bandwidth_hz", [](Scenario&, Emitter& e, Random& r) { e.bandwidth_hz = between(r, 0, 3e7); }},
-      {"polarization",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.polarization = oneOf(r, std::vector{Polarization::horizontal, Polarization::vertical,
-                                               Polarization::slant_45, Polarization::circular_left});
-       }},
+      NUMBER(e.power_w, 1, 1e5),
+      NUMBER(e.losses_db, 0, 5),
+      CHOICE(e.frequency_hz, 4e8, 1.2e9, 3e9, 9e9),
+      NUMBER(e.bandwidth_hz, 0, 3e7),
+      CHOICE(e.polarization, Value::horizontal, Value::vertical, Value::slant_45, Value::circular_left),
       {"antenna", [](Scenario&, Emitter& e, Random& r) { e.antenna = someAntenna(r); }},
       {"scan.kind",
        [](Scenario&, Emitter& e, Random& r) {
@@ -87,52 +50,19 @@ const std::vector<Edit>& emitterEdits() {
          e.scan.width_deg = 80;
          e.scan.rate_deg_s = 20;
        }},
-      {"scan.azimuth_deg", [](Scenario&, Emitter& e, Random& r) { e.scan.azimuth_deg = between(r, 0, 360); }},
-      {"scan.elevation_deg",
-       [](Scenario&, Emitter& e, Random& r) { e.scan.elevation_deg = between(r, -5, 20); }},
-      {"propagation",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.model = oneOf(
-             r, std::vector{PropagationModel::free_space, PropagationModel::horizon,
-                            PropagationModel::diffraction, PropagationModel::two_ray, PropagationModel::itm,
-                            PropagationModel::p528, PropagationModel::p1812, PropagationModel::p452});
-       }},
-      {"diffraction.method",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.diffraction.method =
-             oneOf(r, std::vector{propagation::DiffractionMethod::delta_bullington,
-                                  propagation::DiffractionMethod::single_edge,
-                                  propagation::DiffractionMethod::deygout});
-       }},
-      {"two_ray.sum",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.two_ray.sum =
-             oneOf(r, std::vector{propagation::TwoRaySum::coherent, propagation::TwoRaySum::envelope});
-       }},
-      {"two_ray.roughness_model",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.two_ray.roughness_model = oneOf(
-             r, std::vector{propagation::RoughnessModel::ament, propagation::RoughnessModel::miller_brown});
-       }},
-      {"itm.form",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.itm.form =
-             oneOf(r, std::vector{propagation::ItmForm::point_to_point, propagation::ItmForm::area});
-       }},
-      {"itm.time_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.time_percent = between(r, 5, 95); }},
-      {"itm.location_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.location_percent = between(r, 5, 95); }},
-      {"itm.situation_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.situation_percent = between(r, 5, 95); }},
-      {"itm.service",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.itm.service =
-             oneOf(r, std::vector{propagation::ItmService::single_message, propagation::ItmService::mobile,
-                                  propagation::ItmService::broadcast});
-       }},
-      {"itm.irregularity_m",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.irregularity_m = between(r, 10, 300); }},
+      NUMBER(e.scan.azimuth_deg, 0, 360),
+      NUMBER(e.scan.elevation_deg, -5, 20),
+      CHOICE(e.propagation.model, Value::free_space, Value::horizon, Value::diffraction, Value::two_ray,
+             Value::itm, Value::p528, Value::p1812, Value::p452),
+      CHOICE(e.propagation.diffraction.method, Value::delta_bullington, Value::single_edge, Value::deygout),
+      CHOICE(e.propagation.two_ray.sum, Value::coherent, Value::envelope),
+      CHOICE(e.propagation.two_ray.roughness_model, Value::ament, Value::miller_brown),
+      CHOICE(e.propagation.itm.form, Value::point_to_point, Value::area),
+      NUMBER(e.propagation.itm.time_percent, 5, 95),
+      NUMBER(e.propagation.itm.location_percent, 5, 95),
+      NUMBER(e.propagation.itm.situation_percent, 5, 95),
+      CHOICE(e.propagation.itm.service, Value::single_message, Value::mobile, Value::broadcast),
+      NUMBER(e.propagation.itm.irregularity_m, 10, 300),
       {"itm.siting",
        [](Scenario&, Emitter& e, Random& r) {
          e.propagation.itm.transmitter_siting =
@@ -140,58 +70,26 @@ const std::vector<Edit>& emitterEdits() {
          e.propagation.itm.receiver_siting =
              oneOf(r, std::vector{propagation::ItmSiting::random, propagation::ItmSiting::very_careful});
        }},
-      {"p528.time_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p528.time_percent = between(r, 0, 99); }},
-      {"p1812.time_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p1812.time_percent = between(r, 1, 50); }},
-      {"p1812.location_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p1812.location_percent = between(r, 1, 99); }},
-      {"p1812.clutter_height_m",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p1812.clutter_height_m = between(r, 0, 30); }},
-      {"p1812.zone",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.p1812.zone =
-             oneOf(r, std::vector{propagation::ClearAirZone::by_height, propagation::ClearAirZone::inland,
-                                  propagation::ClearAirZone::sea});
-       }},
-      {"p452.time_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p452.time_percent = between(r, 0.01, 50); }},
-      {"p452.refractivity_lapse_rate",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.p452.refractivity_lapse_rate = between(r, 20, 80);
-       }},
-      {"receiver.noise_figure_db",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.noise_figure_db = between(r, 1, 9); }},
-      {"receiver.antenna_temperature_k",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.antenna_temperature_k = between(r, 50, 400); }},
-      {"receiver.bandwidth_hz",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.bandwidth_hz = between(r, 1e5, 1e7); }},
-      {"receiver.losses_db",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.losses_db = between(r, 0, 4); }},
-      {"receiver.processing_gain_db",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.processing_gain_db = between(r, 0, 30); }},
-      {"receiver.polarization",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.receiver.polarization =
-             oneOf(r, std::vector{Polarization::horizontal, Polarization::circular_right});
-       }},
-      {"receiver.cross_polar_isolation_db",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.cross_polar_isolation_db = between(r, 15, 40); }},
+      NUMBER(e.propagation.p528.time_percent, 0, 99),
+      NUMBER(e.propagation.p1812.time_percent, 1, 50),
+      NUMBER(e.propagation.p1812.location_percent, 1, 99),
+      NUMBER(e.propagation.p1812.clutter_height_m, 0, 30),
+      CHOICE(e.propagation.p1812.zone, Value::by_height, Value::inland, Value::sea),
+      NUMBER(e.propagation.p452.time_percent, 0.01, 50),
+      NUMBER(e.propagation.p452.refractivity_lapse_rate, 20, 80),
+      NUMBER(e.receiver.noise_figure_db, 1, 9),
+      NUMBER(e.receiver.antenna_temperature_k, 50, 400),
+      NUMBER(e.receiver.bandwidth_hz, 1e5, 1e7),
+      NUMBER(e.receiver.losses_db, 0, 4),
+      NUMBER(e.receiver.processing_gain_db, 0, 30),
+      CHOICE(e.receiver.polarization, Polarization::horizontal, Polarization::circular_right),
+      NUMBER(e.receiver.cross_polar_isolation_db, 15, 40),
       {"receiver.pulses", [](Scenario&, Emitter& e, Random& r) { e.receiver.pulses = 1 + below(r, 30); }},
-      {"receiver.pfa",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.receiver.pfa = oneOf(r, std::vector{1e-8, 1e-4});
-       }},
+      CHOICE(e.receiver.pfa, 1e-8, 1e-4),
       {"receiver.swerling", [](Scenario&, Emitter& e, Random& r) { e.receiver.swerling = below(r, 5); }},
-      {"receiver.detection",
-       [](Scenario&, Emitter& e, Random& r) {
-         e.receiver.detection =
-             oneOf(r, std::vector{scenario::DetectionMethod::exact, scenario::DetectionMethod::shnidman});
-       }},
-      {"receiver.required_signal_to_jammer_db",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.required_signal_to_jammer_db = between(r, 3, 20); }},
-      {"receiver.target_rcs_m2",
-       [](Scenario&, Emitter& e, Random& r) { e.receiver.target_rcs_m2 = between(r, 0.1, 20); }},
+      CHOICE(e.receiver.detection, Value::exact, Value::shnidman),
+      NUMBER(e.receiver.required_signal_to_jammer_db, 3, 20),
+      NUMBER(e.receiver.target_rcs_m2, 0.1, 20),
       {"active_s",
        [](Scenario&, Emitter& e, Random& r) {
          e.active_s = below(r, 2) == 0 ? std::vector<scenario::TimeInterval>{}
@@ -225,60 +123,33 @@ const std::vector<Edit>& emitterEdits() {
 
 const std::vector<Edit>& scenarioEdits() {
   static const std::vector<Edit> edits{
-      {"atmosphere.k_factor",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.k_factor = between(r, 1, 1.6); }},
-      {"atmosphere.pressure_hpa",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.pressure_hpa = between(r, 950, 1040); }},
-      {"atmosphere.temperature_k",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.temperature_k = between(r, 260, 310); }},
-      {"atmosphere.vapour_g_m3",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.vapour_g_m3 = between(r, 0, 20); }},
-      {"atmosphere.rain_mm_h",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.atmosphere.rain_mm_h = oneOf(r, std::vector{0., 5., 30.});
-       }},
-      {"atmosphere.rain_height_m",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.rain_height_m = between(r, 500, 4000); }},
-      {"atmosphere.gases",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.atmosphere.gases =
-             oneOf(r, std::vector{propagation::GasLosses::automatic, propagation::GasLosses::always,
-                                  propagation::GasLosses::never});
-       }},
-      {"atmosphere.sea_level_refractivity",
-       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.sea_level_refractivity = between(r, 260, 380); }},
-      {"atmosphere.climate",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.atmosphere.climate =
-             oneOf(r, std::vector{propagation::RadioClimate::desert, propagation::RadioClimate::equatorial});
-       }},
-      {"ground.kind",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.ground.kind =
-             oneOf(r, std::vector{propagation::GroundKind::sea, propagation::GroundKind::dry_ground});
-       }},
-      {"ground.relative_permittivity",
-       [](Scenario& s, Emitter&, Random& r) { s.ground.relative_permittivity = between(r, 4, 60); }},
-      {"ground.conductivity_s_m",
-       [](Scenario& s, Emitter&, Random& r) { s.ground.conductivity_s_m = between(r, 0.001, 4); }},
-      {"ground.roughness_m",
-       [](Scenario& s, Emitter&, Random& r) { s.ground.roughness_m = between(r, 0, 2); }},
-      {"ground.surface_msl_m",
-       [](Scenario& s, Emitter&, Random& r) { s.ground.surface_msl_m = between(r, 0, 900); }},
+      NUMBER(s.atmosphere.k_factor, 1, 1.6),
+      NUMBER(s.atmosphere.pressure_hpa, 950, 1040),
+      NUMBER(s.atmosphere.temperature_k, 260, 310),
+      NUMBER(s.atmosphere.vapour_g_m3, 0, 20),
+      CHOICE(s.atmosphere.rain_mm_h, 0., 5., 30.),
+      NUMBER(s.atmosphere.rain_height_m, 500, 4000),
+      CHOICE(s.atmosphere.gases, Value::automatic, Value::always, Value::never),
+      NUMBER(s.atmosphere.sea_level_refractivity, 260, 380),
+      CHOICE(s.atmosphere.climate, Value::desert, Value::equatorial),
+      CHOICE(s.ground.kind, Value::sea, Value::dry_ground),
+      NUMBER(s.ground.relative_permittivity, 4, 60),
+      NUMBER(s.ground.conductivity_s_m, 0.001, 4),
+      NUMBER(s.ground.roughness_m, 0, 2),
+      NUMBER(s.ground.surface_msl_m, 0, 900),
       {"region.dims",
        [](Scenario& s, Emitter&, Random& r) {
          s.region.dims = {10 + below(r, 4), 9 + below(r, 4), 4 + below(r, 3)};
        }},
-      {"region.size_m", [](Scenario& s, Emitter&, Random& r) { s.region.size_m.x = between(r, 12e3, 18e3); }},
-      {"region.origin",
-       [](Scenario& s, Emitter&, Random& r) { s.region.origin.height_msl_m = between(r, 0, 500); }},
+      NUMBER(s.region.size_m.x, 12e3, 18e3),
+      NUMBER(s.region.origin.height_msl_m, 0, 500),
       {"receivers",
        [](Scenario& s, Emitter&, Random& r) {
          s.receivers.front().gain_dbi = between(r, 0, 9);
          s.receivers.front().polarization = propagation::Polarization::vertical;
          s.receivers.front().bandwidth_hz = between(r, 1e5, 1e8);
        }},
-      {"bands", [](Scenario& s, Emitter&, Random& r) { s.bands.front().end_hz = between(r, 1e9, 5e9); }},
+      NUMBER(s.bands.front().end_hz, 1e9, 5e9),
       {"output.quantities",
        [](Scenario& s, Emitter&, Random& r) {
          s.output.quantities = oneOf(r, std::vector<std::vector<std::string>>{
@@ -288,20 +159,12 @@ const std::vector<Edit>& scenarioEdits() {
                                             {"sinr_db", "intercept_margin_db"},
                                             {"burn_through_margin_db", "field_strength_dbuvm"}});
        }},
-      {"output.combine",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.output.combine = oneOf(r, std::vector{CombineMode::sum, CombineMode::max, CombineMode::per_emitter,
-                                                 CombineMode::per_band});
-       }},
-      {"output.radar_look",
-       [](Scenario& s, Emitter&, Random& r) {
-         s.output.radar_look = oneOf(r, std::vector{scenario::RadarAim::scan, scenario::RadarAim::target});
-       }},
+      CHOICE(s.output.combine, Value::sum, Value::max, Value::per_emitter, Value::per_band),
+      CHOICE(s.output.radar_look, Value::scan, Value::target),
       {"output.wanted_emitter",
        [](Scenario& s, Emitter&, Random& r) { s.output.wanted_emitter = below(r, 3); }},
-      {"output.floor", [](Scenario& s, Emitter&, Random& r) { s.output.floor = between(r, -200, -60); }},
-      {"output.count_threshold_dbwm2",
-       [](Scenario& s, Emitter&, Random& r) { s.output.count_threshold_dbwm2 = between(r, -90, -40); }},
+      NUMBER(s.output.floor, -200, -60),
+      NUMBER(s.output.count_threshold_dbwm2, -90, -40),
       {"name", [](Scenario& s, Emitter&, Random&) { s.hash = (s.name += "'"); }},
       {"emitters: one more",
        [](Scenario& s, Emitter&, Random& r) {
@@ -322,68 +185,13 @@ const std::vector<Edit>& scenarioEdits() {
 std::string editValue(Scenario& scenario, Random& random) {
   const auto& edits = below(random, 5) < 3 ? emitterEdits() : scenarioEdits();
   const Edit& edit = edits[static_cast<std::size_t>(below(random, edits.size()))];
-  edit.apply(scenario, scenario.emitters[static_cast<std::size_t>(below(random, scenario.emitters.size()))],
-             random);
-  return edit.key;
+  edit.second(scenario, scenario.emitters[static_cast<std::size_t>(below(random, scenario.emitters.size()))],
+              random);
+  return edit.first;
 }
 
 /// Makes an edited scenario of another one. @return description of the edit
 using Editor = std::function<std::string(Scenario&, Random&)>;
-
-/// A rotating radar, a jammer on a track, a fixed radar, and two transmitters, with one model or all models.
-std::shared_ptr<Scenario> battlefield(Random& random, FrameKind frame, std::vector<PropagationModel> models) {
-  auto scenario = emptyScenario(frame, kLatitude_deg, kLongitude_deg, {15e3, 14e3, 4000}, {12, 11, 5});
-  scenario->output.floor = -150;
-  const char* const names[] = {"radar", "jammer", "second radar", "radio", "beacon"};
-  for (std::size_t e = 0; e < std::size(names); ++e) {
-    Emitter emitter = plainEmitter(names[e], 0);
-    emitter.propagation.model = models[e % models.size()];
-    emitter.antenna = someAntenna(random);
-    if (e == 0 || e == 2) emitter.kind = EmitterKind::radar;
-    if (e == 1) emitter.kind = EmitterKind::jammer;
-    if (e == 0) emitter.scan.kind = scenario::ScanKind::rotate;
-    emitter.scan.rate_rpm = 5;
-    addEmitter(*scenario, somewhere(random), emitter);
-  }
-  scenario::TrackPoint end = scenario->platforms[1].track.front();
-  end.t_s = 10;
-  end.position.longitude_deg += 0.03;
-  scenario->platforms[1].track.push_back(end);
-  scenario->receivers.emplace_back();
-  scenario->receivers.front().noise_figure_db = 5;
-  scenario->receivers.front().bandwidth_hz = 1e6;
-  scenario->receivers.front().sensitivity_dbm = -90;
-  scenario->output.wanted_emitter = 0;
-  scenario->bands = {{"low", 1e8, 2e9}, {"high", 2e9, 2e10}};
-  return scenario;
-}
-
-std::string withoutCount(const std::string& warning) {
-  return warning.substr(0, warning.find(" ("));
-}
-
-void expectEqualSolvers(const FieldSolver& updated, const FieldSolver& fresh) {
-  ASSERT_EQ(updated.channels().size(), fresh.channels().size());
-  ASSERT_EQ(updated.volumes().size(), fresh.volumes().size());
-  EXPECT_EQ(updated.groundHeights_m().size(), fresh.groundHeights_m().size());
-  for (std::size_t c = 0; c < fresh.channels().size(); ++c) {
-    SCOPED_TRACE(fresh.channels()[c].name);
-    EXPECT_EQ(updated.channels()[c].name, fresh.channels()[c].name);
-    const auto a = updated.volumes()[c].host(), b = fresh.volumes()[c].host();
-    EXPECT_TRUE(a->info == b->info);
-    EXPECT_EQ(a->info.extra, b->info.extra);
-    EXPECT_EQ(a->first_valid_k, b->first_valid_k);
-    ASSERT_EQ(a->values.size(), b->values.size());
-    long long different = 0;
-    for (std::size_t v = 0; v < a->values.size(); ++v) different += a->values[v] != b->values[v] ? 1 : 0;
-    ASSERT_EQ(different, 0) << "of " << a->values.size() << " voxels";
-  }
-  std::vector<std::string> warnings;
-  for (const std::string& warning : updated.warnings()) warnings.push_back(withoutCount(warning));
-  for (const std::string& warning : fresh.warnings()) {
-    EXPECT_THAT(warnings, ::testing::Contains(withoutCount(warning)));
-  }
-}
 
 /// Gives a solver one edit after the other, and compares each result with that of a new solver. Edits that a
 /// new solver refuses must also be refused by the update, and leave the solver unchanged.
@@ -497,8 +305,7 @@ TEST_P(EditedEchoes, ThenPowerEqualANewSolver) {
   auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
   scenario->output.quantities = {"power_density_dbwm2", "detection_probability"};
   scenario->output.radar_look = scenario::RadarAim::target;
-  FieldSolver solver(scenario, nullptr, options);
-  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField solver(scenario, nullptr, options);
   const auto edit = [&](const std::function<void(Scenario&)>& change) {
     scenario = std::make_shared<Scenario>(*scenario);
     change(*scenario);
@@ -510,8 +317,7 @@ TEST_P(EditedEchoes, ThenPowerEqualANewSolver) {
     });
   }
   for (int n = 0; n < 3; ++n) edit([](Scenario& s) { s.emitters.back().power_w *= 2; });
-  FieldSolver fresh(scenario, nullptr, options);
-  fresh.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField fresh(scenario, nullptr, options);
   expectEqualSolvers(solver, fresh);
 }
 
@@ -529,195 +335,12 @@ TEST(CudaEditedScenario, EqualsANewSolver) {
   checkEdits(jammed, hills(), 60, editValue, random, options);
 }
 
-/// Solves a scenario and then an edited one.
-class EditedOnce : public ::testing::Test {
- protected:
-  void SetUp() override {
-    Random random(7);
-    scenario_ = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
-    solver_ = std::make_unique<FieldSolver>(scenario_, nullptr, FieldOptions{});
-    solver_->update(scenario::snapshotAt(scenario_, nullptr, 0));
-  }
-  FieldChanged after(const std::function<void(Scenario&)>& edit) {
-    auto edited = std::make_shared<Scenario>(*scenario_);
-    edit(*edited);
-    const FieldChanged changed = solver_->update(scenario::snapshotAt(edited, nullptr, 0));
-    scenario_ = edited;
-    return changed;
-  }
-  std::shared_ptr<Scenario> scenario_;
-  std::unique_ptr<FieldSolver> solver_;
-};
-
-TEST_F(EditedOnce, PowerRepeatsOnlyCombinationOfThatEmitter) {
-  const FieldChanged changed = after([](Scenario& s) { s.emitters[3].power_w *= 2; });
-  EXPECT_TRUE(changed.any);
-  EXPECT_FALSE(changed.grid);
-  EXPECT_FALSE(changed.channels);
-  EXPECT_THAT(changed.moved, IsEmpty());
-  EXPECT_THAT(changed.turned, ElementsAre(3));
-  EXPECT_THAT(changed.volumes, ElementsAre(0));
-}
-
-TEST_F(EditedOnce, ModelRepeatsOnlyGeometryOfThatEmitter) {
-  const FieldChanged changed =
-      after([](Scenario& s) { s.emitters[3].propagation.model = PropagationModel::two_ray; });
-  EXPECT_THAT(changed.moved, ElementsAre(3));
-  EXPECT_THAT(changed.turned, IsEmpty());
-}
-
-TEST_F(EditedOnce, FloorRepeatsOnlyTheProduct) {
-  const FieldChanged changed = after([](Scenario& s) { s.output.floor = -80; });
-  EXPECT_THAT(changed.moved, IsEmpty());
-  EXPECT_THAT(changed.turned, IsEmpty());
-  EXPECT_THAT(changed.volumes, ElementsAre(0));
-  EXPECT_EQ(solver_->stageTimes().combine_ms, 0);
-}
-
-TEST_F(EditedOnce, QuantitiesKeepTheGeometry) {
-  const FieldChanged changed = after([](Scenario& s) { s.output.quantities = {"snr_db", "emitter_count"}; });
-  EXPECT_TRUE(changed.channels);
-  EXPECT_FALSE(changed.grid);
-  EXPECT_THAT(changed.moved, IsEmpty());
-  EXPECT_THAT(changed.volumes, ElementsAre(0, 1));
-}
-
-TEST_F(EditedOnce, OtherQuantitiesOfTheOptionsKeepTheGeometry) {
-  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario_, nullptr, 0);
-  EXPECT_THROW(solver_->setQuantities({"nonsense"}, scenario_), Error);
-  EXPECT_FALSE(solver_->update(snapshot).any);
-  solver_->setQuantities({"snr_db", "emitter_count"}, scenario_);
-  EXPECT_EQ(solver_->channels().size(), 1U) << "until the next update";
-  EXPECT_THAT(solver_->update(snapshot).moved, IsEmpty());
-  FieldOptions options;
-  options.quantities = {"snr_db", "emitter_count"};
-  FieldSolver fresh(scenario_, nullptr, options);
-  fresh.update(snapshot);
-  expectEqualSolvers(*solver_, fresh);
-  EXPECT_FALSE(solver_->update(snapshot).any);
-}
-
-TEST_F(EditedOnce, RegionRepeatsEverything) {
-  EXPECT_TRUE(after([](Scenario& s) { s.region.dims = {9, 9, 4}; }).grid);
-  EXPECT_EQ(solver_->grid().dims.x, 9);
-  EXPECT_EQ(solver_->volumes().front().grid().dims.z, 4);
-}
-
-TEST_F(EditedOnce, AddedAndRemovedEmittersKeepTheGeometryOfTheOthers) {
-  const FieldChanged added = after([](Scenario& s) {
-    Random random(9);
-    addEmitter(s, somewhere(random), plainEmitter("new", 0));
-    std::swap(s.emitters[1], s.emitters.back());
-  });
-  EXPECT_THAT(added.moved, ElementsAre(1));
-  const FieldChanged removed = after([](Scenario& s) { s.emitters.erase(s.emitters.begin()); });
-  EXPECT_THAT(removed.moved, IsEmpty());
-  const FieldChanged changed = after([](Scenario& s) {
-    s.emitters.pop_back();
-    s.emitters[2].frequency_hz *= 2;
-  });
-  EXPECT_THAT(changed.moved, ElementsAre(2));
-  FieldSolver fresh(scenario_, nullptr, {});
-  fresh.update(scenario::snapshotAt(scenario_, nullptr, 0));
-  expectEqualSolvers(*solver_, fresh);
-}
-
-TEST_F(EditedOnce, ARefusedEmitterLeavesTheGeometryOfTheOthers) {
-  auto refused = std::make_shared<Scenario>(*scenario_);
-  refused->emitters.pop_back();
-  refused->emitters[3].propagation.model = PropagationModel::p528;
-  refused->emitters[3].propagation.p528.time_percent = 200;
-  EXPECT_THROW(solver_->update(scenario::snapshotAt(refused, nullptr, 0)), Error);
-  EXPECT_THAT(after([](Scenario& s) { s.emitters[3].power_w *= 2; }).moved, IsEmpty());
-  FieldSolver fresh(scenario_, nullptr, {});
-  fresh.update(scenario::snapshotAt(scenario_, nullptr, 0));
-  expectEqualSolvers(*solver_, fresh);
-}
-
-TEST_F(EditedOnce, ValueWithoutEffectComputesNoVolume) {
-  const auto before = solver_->volumes().front().dense();
-  const FieldChanged changed = after([](Scenario& s) {
-    s.hash = "another";
-    s.receivers.front().gain_dbi = 9;
-    s.emitters[3].receiver.noise_figure_db = 7;
-    s.emitters[0].waveform = scenario::Waveform{1000, 1e-6, {}};
-    s.placed_receivers.emplace_back();
-    s.placed_receivers.back().platform = 0;
-    s.placed_receivers.back().antenna = scenario::makeIsotropic();
-    s.targets.emplace_back();
-    s.targets.back().platform = 1;
-  });
-  EXPECT_FALSE(changed.any);
-  EXPECT_EQ(solver_->volumes().front().dense(), before);
-  EXPECT_EQ(solver_->volumes().front().info().extra.at("scenario_hash"), "another");
-}
-
-TEST_F(EditedOnce, NamesSidesAndSymbolsComputeNoVolume) {
-  after([](Scenario& s) {
-    s.output.combine = CombineMode::per_emitter;
-    s.emitters[3].antenna = scenario::makeSinc(45, 0.3, 0.3, -60);
-    s.emitters[3].frequency_hz = 9e9;
-  });
-  const auto before = solver_->volumes()[3].dense();
-  const FieldChanged changed = after([](Scenario& s) {
-    s.emitters[3].name = "renamed";
-    s.platforms[0].name = "elsewhere";
-    s.platforms[0].side = scenario::Side::hostile;
-    s.platforms[0].sidc = "10031000001101000000";
-  });
-  EXPECT_TRUE(changed.channels) << "by its name";
-  EXPECT_THAT(changed.moved, IsEmpty());
-  EXPECT_THAT(changed.turned, IsEmpty());
-  EXPECT_THAT(changed.volumes, IsEmpty());
-  EXPECT_EQ(solver_->volumes()[3].dense(), before);
-  EXPECT_EQ(solver_->channels()[3].name, "power_density_dbwm2:renamed");
-  EXPECT_EQ(solver_->volumes()[3].info().quantity, "power_density_dbwm2:renamed");
-  EXPECT_THAT(solver_->warnings(), ::testing::Contains(HasSubstr("'renamed': voxels closer than")));
-  EXPECT_THAT(solver_->warnings(), ::testing::Not(::testing::Contains(HasSubstr("'radio'"))));
-}
-
-TEST_F(EditedOnce, ResolvedWarningsDisappear) {
-  after([](Scenario& s) {
-    s.emitters[3].frequency_hz = 9e9;
-    s.emitters[3].antenna = scenario::makeSinc(45, 0.3, 0.3, -60);
-  });
-  EXPECT_THAT(solver_->warnings(),
-              ::testing::Contains(HasSubstr("'radio': voxels closer than the far-field distance")));
-  after([](Scenario& s) { s.emitters[3].antenna = scenario::makeIsotropic(); });
-  EXPECT_THAT(solver_->warnings(), ::testing::Not(::testing::Contains(HasSubstr("'radio'"))));
-}
-
-TEST_F(EditedOnce, RefusedEditKeepsTheField) {
-  const auto before = solver_->volumes().front().dense();
-  auto refused = std::make_shared<Scenario>(*scenario_);
-  refused->emitters[3].propagation.model = PropagationModel::p528;
-  refused->emitters[3].propagation.p528.time_percent = 200;
-  EXPECT_THROW(solver_->update(scenario::snapshotAt(refused, nullptr, 0)), Error);
-  EXPECT_EQ(solver_->volumes().front().dense(), before);
-  after([](Scenario& s) { s.emitters[3].power_w *= 2; });
-  FieldSolver fresh(scenario_, nullptr, {});
-  fresh.update(scenario::snapshotAt(scenario_, nullptr, 0));
-  expectEqualSolvers(*solver_, fresh);
-}
-
-TEST_F(EditedOnce, OtherElevationFilesMustBeGiven) {
-  auto edited = std::make_shared<Scenario>(*scenario_);
-  auto snapshot = scenario::snapshotAt(scenario_, nullptr, 0);
-  edited->terrain = scenario::TerrainSpec{{"other.tif"}, {}, {}};
-  snapshot.scenario = edited;
-  EXPECT_EQ(
-      test::errorOf([&] { solver_->update(snapshot); }),
-      "test.yaml: the edited scenario names other elevation files: they must be loaded and given to the "
-      "update");
-}
-
 TEST(EditedScenario, AnUpdateThatFailsOverAHoleCanBeFollowedByOthers) {
   Random random(8);
   const auto terrain = std::make_shared<MadeTerrain>(kLatitude_deg, kLongitude_deg, 0.5, 0.02);
   auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::free_space});
   scenario->region.size_m = {9e3, 9e3, 4000};
-  FieldSolver solver(scenario, terrain, {});
-  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
+  SolvedField solver(scenario, terrain);
   auto edited = std::make_shared<Scenario>(*scenario);
   edited->emitters[3].propagation.model = PropagationModel::diffraction;
   edited->platforms[3].track.front().position.latitude_deg = kLatitude_deg + 0.24;
@@ -728,8 +351,7 @@ TEST(EditedScenario, AnUpdateThatFailsOverAHoleCanBeFollowedByOthers) {
   const auto moved = std::make_shared<Scenario>(*scenario);
   moved->emitters[0].power_w = 5;
   solver.update(scenario::snapshotAt(moved, terrain.get(), 2));
-  FieldSolver fresh(moved, terrain, {});
-  fresh.update(scenario::snapshotAt(moved, terrain.get(), 2));
+  SolvedField fresh(moved, terrain, {}, 2);
   expectEqualSolvers(solver, fresh);
 }
 

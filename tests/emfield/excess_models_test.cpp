@@ -506,8 +506,7 @@ TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
     SCOPED_TRACE(entry.path().filename());
     const auto loaded = scenario::loadScenario(entry.path().string());
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*loaded);
-    FieldSolver solver(loaded, terrain, {});
-    solver.update(scenario::snapshotAt(loaded, terrain.get(), 0));
+    SolvedField solver(loaded, terrain);
     EXPECT_GT(solver.volumes().front().host()->info.range_max, -60);
     EXPECT_LT(solver.volumes().front().host()->info.range_min, -70);
     ++count;
@@ -556,8 +555,7 @@ TEST(ExcessModels, RainBelowItsFrequenciesIsNegligibleAndNotWarnedOf) {
 TEST(ExcessModels, HeightsOutsideAModelWarnOnce) {
   auto scenario = smoothEarth(PropagationModel::p528, 1e9, 20);
   scenario->region.size_m.z = 30e3;
-  FieldSolver solver(scenario, nullptr, {});
-  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField solver(scenario);
   EXPECT_THAT(solver.warnings(),
               ::testing::ElementsAre(HasSubstr("29531.2 m is outside 1.5..20000 m: taken as the nearest")));
 }

@@ -112,8 +112,7 @@ TEST(Excess, TakesMemoryOnlyWhereAModelHasOne) {
   scenario->emitters[0].propagation.model = PropagationModel::diffraction;
   EXPECT_EQ(bytesOf(), columns * (40 + 2 * 32));
   addEmitter(*scenario, {52, 5, 100}, plainEmitter("free", 0));
-  FieldSolver solver(scenario, nullptr, {});
-  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField solver(scenario);
   EXPECT_EQ(solver.memoryUse().bytes_per_voxel_and_emitter, 1) << "one of two";
 }
 
@@ -206,8 +205,7 @@ TEST(Excess, MissingTerrainIsAnErrorOrAHoleAndNeverSeaLevel) {
     EXPECT_THROW(solve(scenario, terrain), Error);
     FieldOptions options;
     options.allow_missing_terrain = true;
-    FieldSolver solver(scenario, terrain, options);
-    solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
+    SolvedField solver(scenario, terrain, options);
     const auto volume = solver.volumes().front().host();
     ASSERT_FALSE(volume->first_valid_k.empty());
     EXPECT_EQ(volume->first_valid_k[10], 32) << "beyond the hole nothing is known";

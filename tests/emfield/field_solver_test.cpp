@@ -60,8 +60,7 @@ std::shared_ptr<scenario::Scenario> battlefield() {
 }
 
 UnsetVector<float> freshValues(const std::shared_ptr<scenario::Scenario>& scenario, double t_s) {
-  FieldSolver solver(scenario, nullptr, {});
-  solver.update(scenario::snapshotAt(scenario, nullptr, t_s));
+  SolvedField solver(scenario, nullptr, {}, t_s);
   return solver.volumes().front().host()->values;
 }
 
@@ -95,8 +94,7 @@ TEST(FieldSolver, KeepsTheGeometryOfAnEmitterThatMovedLessThanTheTolerance) {
   const auto scenario = battlefield();
   FieldOptions options;
   options.move_tolerance_m = 1e5;
-  FieldSolver solver(scenario, nullptr, options);
-  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField solver(scenario, nullptr, options);
   EXPECT_THAT(solver.update(scenario::snapshotAt(scenario, nullptr, 1)).moved, IsEmpty());
 }
 
@@ -138,8 +136,7 @@ TEST(FieldSolver, DoesNotDependOnTheNumberOfThreads) {
 
 TEST(FieldSolver, KeepsVolumesThatACallerHolds) {
   const auto scenario = battlefield();
-  FieldSolver solver(scenario, nullptr, {});
-  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField solver(scenario);
   const auto kept = solver.volumes().front().host();
   const auto values = kept->values;
   for (double t_s : {1.0, 2.0, 3.0}) solver.update(scenario::snapshotAt(scenario, nullptr, t_s));
@@ -166,8 +163,7 @@ TEST(FieldSolver, MakesOneVolumePerEmitterOrBand) {
 TEST(FieldSolver, OnlyTheChannelsOfAChangedEmitterAreNew) {
   const auto scenario = battlefield();
   scenario->output.combine = scenario::CombineMode::per_emitter;
-  FieldSolver solver(scenario, nullptr, {});
-  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField solver(scenario);
   const auto before = solver.volumes();
   solver.update(scenario::snapshotAt(scenario, nullptr, 1));
   EXPECT_NE(solver.volumes()[0].dense(), before[0].dense()) << "the radar turned";
@@ -178,8 +174,7 @@ TEST(FieldSolver, OnlyTheChannelsOfAChangedEmitterAreNew) {
 TEST(FieldSolver, UnchangedVolumesHaveTheTimeOfTheLastUpdate) {
   const auto scenario = battlefield();
   scenario->emitters = {scenario->emitters[3]};
-  FieldSolver solver(scenario, nullptr, {});
-  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField solver(scenario);
   const auto before = solver.volumes();
   EXPECT_FALSE(solver.update(scenario::snapshotAt(scenario, nullptr, 1)).any);
   EXPECT_EQ(solver.volumes()[0].dense(), before[0].dense());
@@ -269,8 +264,7 @@ TEST(FieldSolver, CountsAndMarksTheNearField) {
   emitter.frequency_hz = 1e10;
   emitter.antenna = scenario::makeSinc(45, 0.8, 0.8, -60);
   addEmitter(*scenario, {0, 0, 500}, emitter);
-  FieldSolver solver(scenario, nullptr, {});
-  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField solver(scenario);
   EXPECT_THAT(solver.warnings(), ElementsAre(HasSubstr("'dish': voxels closer than the far-field distance")));
   EXPECT_THAT(solver.volumes().front().host()->info.extra.at("near_field"), HasSubstr("dish: "));
 }

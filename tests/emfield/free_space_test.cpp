@@ -61,8 +61,7 @@ class FreeSpaceTable : public ::testing::Test {
     addEmitter(*scenario, middleOf(*scenario), emitter);
     scenario->receivers.emplace_back();
     scenario->output.quantities = {"power_density_dbwm2", "field_strength_dbuvm", "received_power_dbm"};
-    FieldSolver solver(scenario, nullptr, {});
-    solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+    SolvedField solver(scenario);
     return solver.volumes();
   }
 
@@ -191,8 +190,7 @@ TEST(FreeSpace, AnEmitterFarOutsideTheVolumeAndOneAtThePoleAreRight) {
   const GeodeticPosition far{86.0, -100, 5000}, pole{90, 0, 3000};
   addEmitter(*scenario, far, plainEmitter("far", 0));
   addEmitter(*scenario, pole, plainEmitter("pole", 0));
-  FieldSolver solver(scenario, nullptr, {});
-  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  SolvedField solver(scenario);
   ASSERT_EQ(solver.volumes().size(), 2u);
   const GeoFrame frame(solver.grid().frame);
   const GeodeticPosition sites[] = {far, pole};

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "emfield/ground/read_posts.h"
-#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/link/path_budget.h"
 #include "tests/emfield/made_terrain.h"

@@ -135,8 +135,7 @@ TEST(JammerToSignal, CountsAPathAcrossMissingTerrainAsFreeWhereThatIsAllowed) {
   options.allow_missing_terrain = true;
   const float free = valueAt(*solve(scenario, terrain, options), 2, 3, 3);
   scenario->emitters[1].propagation.model = propagation::PropagationModel::horizon;
-  FieldSolver solver(scenario, terrain, options);
-  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
+  SolvedField solver(scenario, terrain, options);
   EXPECT_NEAR(valueAt(*solver.volumes()[0].host(), 2, 3, 3), free, 0.02);
   EXPECT_THAT(solver.warnings(),
               ::testing::Contains(::testing::AllOf(::testing::HasSubstr("jammer 'jammer' to radar 'radar': "),
@@ -170,12 +169,10 @@ TEST(Jamming, ChannelsWithoutJammingEqualSilentJammers) {
   jammed->output.quantities = {"snr_db", "detection_probability"};
   FieldOptions options;
   options.also_per_emitter = options.also_unjammed = true;
-  FieldSolver solver(jammed, nullptr, options);
-  solver.update(scenario::snapshotAt(jammed, nullptr, 0));
+  SolvedField solver(jammed, nullptr, options);
   const auto silent = std::make_shared<scenario::Scenario>(*jammed);
   silent->emitters[1].active_s = {{5, 10}};
-  FieldSolver without(silent, nullptr, {});
-  without.update(scenario::snapshotAt(silent, nullptr, 0));
+  SolvedField without(silent);
   const Channel& last = solver.channels().back();
   EXPECT_EQ(last.name, "detection_probability without jamming");
   EXPECT_EQ(solver.channels()[solver.channels().size() - 2].name, "detection_probability:radar");

@@ -13,7 +13,6 @@
 #include "emfield/excess/emitter_excess.h"
 #include "emfield/excess/radials.h"
 #include "emscape/scenario/terrain/terrain.h"
-#include "propagation/parabolic_equation/air/path_air.h"
 #include "propagation/parabolic_equation/air/refractivity_field.h"
 #include "propagation/parabolic_equation/model.h"
 #include "propagation/parabolic_equation/plan.h"

@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "emscape/scenario/file/scenario_file.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"
@@ -45,8 +43,7 @@ TEST(Poses, APlatformThatAHostMovesHasTheFieldOfAScenarioWithThePlatformThere) {
   for (const double tolerance_m : {0.0, 100.0}) {
     FieldOptions options;
     options.move_tolerance_m = tolerance_m;
-    FieldSolver solver(base, terrain, options);
-    solver.update(scenario::snapshotAt(base, terrain.get(), 0));
+    SolvedField solver(base, terrain, options);
     for (int p = 0; p < static_cast<int>(base->platforms.size()); ++p) {
       PlatformPose pose = besideOf(*base, p);
       for (int step = 0; step < 2; ++step, pose.position.latitude_deg += 1e-5) {
@@ -55,8 +52,7 @@ TEST(Poses, APlatformThatAHostMovesHasTheFieldOfAScenarioWithThePlatformThere) {
         scenario::Platform& platform = there->platforms[static_cast<std::size_t>(p)];
         platform.track = {{0, pose.position, {}, {}, {}}};
         platform.attitude = pose.attitude;
-        FieldSolver fresh(there, terrain);
-        fresh.update(scenario::snapshotAt(there, terrain.get(), 7));
+        SolvedField fresh(there, terrain, {}, 7);
         for (std::size_t c = 0; c < fresh.volumes().size(); ++c)
           EXPECT_EQ(solver.volumes()[c].host()->values, fresh.volumes()[c].host()->values) << p << " " << c;
       }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 
-#include "emfield/radar/receiver.h"
 #include "emscape/emfield/link/link.h"
 #include "tests/emfield/radar_duel.h"
 #include "tests/support/errors.h"
@@ -17,7 +16,6 @@ namespace {
 
 using namespace emscape::emfield::testing;
 using propagation::PropagationModel;
-using scenario::Quantity;
 using scenario::Scenario;
 using ::testing::HasSubstr;
 

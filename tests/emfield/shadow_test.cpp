@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "emscape/base/geodesy/geoid.h"
-#include "emscape/base/units.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/scenario/terrain/terrain.h"
 #include "tests/emfield/test_scenario.h"

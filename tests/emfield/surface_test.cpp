@@ -354,8 +354,7 @@ TEST_P(SurfaceField, SLOW_AfterEditToRadialModelEqualsNewSolver) {
   options.backend = GetParam();
   options.surface = surface;
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
-  FieldSolver solver(scenario, terrain_, options);
-  solver.update(scenario::snapshotAt(scenario, terrain_.get(), 0));
+  SolvedField solver(scenario, terrain_, options);
   const auto edited = radarOnRidge(PropagationModel::parabolic_equation);
   solver.update(scenario::snapshotAt(edited, terrain_.get(), 0), terrain_);
   EXPECT_EQ(solver.volumes().front().host()->values, solve(edited, terrain_, options)->values);

@@ -95,8 +95,7 @@ class JacksboroMesh : public ::testing::Test {
                             const std::shared_ptr<const Surface>& surface) const {
     FieldOptions options;
     options.surface = surface;
-    FieldSolver solver(scenario, terrain_, options);
-    solver.update(scenario::snapshotAt(scenario, terrain_.get(), 60));
+    SolvedField solver(scenario, terrain_, options, 60);
     return *solver.volumes().front().host();
   }
 

@@ -55,13 +55,21 @@ inline void addEmitter(scenario::Scenario& scenario, const GeodeticPosition& pos
   scenario.emitters.push_back(std::move(emitter));
 }
 
+/// A solver with the field of an instant.
+struct SolvedField : FieldSolver {
+  explicit SolvedField(const std::shared_ptr<const scenario::Scenario>& scenario,
+                       const scenario::TerrainPtr& terrain = nullptr, const FieldOptions& options = {},
+                       double time_s = 0)
+      : FieldSolver(scenario, terrain, options) {
+    update(scenario::snapshotAt(scenario, terrain.get(), time_s));
+  }
+};
+
 /// Solves one instant and returns the first channel's volume.
 inline std::shared_ptr<const volume::DenseVolume> solve(const std::shared_ptr<scenario::Scenario>& scenario,
                                                         const scenario::TerrainPtr& terrain = nullptr,
                                                         const FieldOptions& options = {}) {
-  FieldSolver solver(scenario, terrain, options);
-  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
-  return solver.volumes().front().host();
+  return SolvedField(scenario, terrain, options).volumes().front().host();
 }
 
 inline float valueAt(const volume::DenseVolume& volume, int i, int j, int k) {

@@ -1,5 +1,4 @@
 // Elevation files in each format that is read.
-#include <cmath>
 
 #include "emscape/scenario/terrain/terrain.h"
 #include "tests/fuzz/fuzz_target.h"

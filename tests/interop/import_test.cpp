@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"

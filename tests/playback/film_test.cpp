@@ -1,7 +1,6 @@
 #include "playback/pictures/film.h"
 
 #include "emscape/base/units.h"
-#include "emscape/playback/frames/scene.h"
 #include "emscape/playback/pictures/painter.h"
 #include "playback/frames/platform_tracks.h"
 #include "tests/playback/playback_samples.h"

@@ -14,7 +14,6 @@
 #include "emscape/scenario/model/poses.h"
 #include "playback/sockets/socket.h"
 #include "playback/stream/acmi_server.h"
-#include "recording/acmi/acmi_handshake.h"
 #include "recording/dis/orientation.h"
 #include "recording/dis/pdu.h"
 #include "recording/read_recording.h"

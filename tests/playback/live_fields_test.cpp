@@ -1,7 +1,6 @@
 #include "playback/live/live_fields.h"
 
 #include <condition_variable>
-#include <numeric>
 
 #include "tests/playback/playback_samples.h"
 

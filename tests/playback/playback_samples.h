@@ -6,9 +6,7 @@
 
 #include <atomic>
 #include <cmath>
-#include <filesystem>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>

@@ -20,8 +20,6 @@ using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 using Existing = SeriesOptions::Existing;
 
 const std::vector<std::string>& allFormats() {

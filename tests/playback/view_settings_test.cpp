@@ -1,5 +1,6 @@
 #include "playback/view/view_settings.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,28 @@
 
 namespace emscape::playback::test {
 namespace {
+
+/// The table of docs/view-state.md, as Markdown.
+std::string viewStateTable() {
+  std::string table = "| key | value | default | option | meaning |\n|---|---|---|---|---|\n";
+  for (const ViewSetting& setting : viewSettings()) {
+    if (setting.key.empty()) continue;
+    std::string value = setting.value_text, of_default = setting.default_text;
+    if (value.empty()) {
+      value = setting.isSwitch()   ? "true, false"
+              : setting.isChoice() ? fmt::format("{}", fmt::join(setting.spec.choices, ", "))
+                                   : fmt::format("{:g}..{:g}{}{}", setting.spec.minimum, setting.spec.maximum,
+                                                 setting.spec.unit.empty() ? "" : " ", setting.spec.unit);
+    }
+    if (of_default.empty()) {
+      of_default = setting.text(ViewState{});
+      if (setting.isSwitch()) of_default = of_default == "on" ? "true" : "false";
+    }
+    table += fmt::format("| `{}` | {} | {} | {} | {} |\n", setting.key, value, of_default,
+                         setting.option.empty() ? "" : "`" + setting.option + "`", setting.meaning);
+  }
+  return table;
+}
 
 TEST(ViewSettings, DocumentationHoldsTheTable) {
   const std::string manual = emscape::test::readFile(emscape::test::sourceFile("docs/view-state.md"));

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <random>
 
 #include "emscape/playback/pictures/painter.h"

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "emscape/base/geodesy/geoid.h"
 #include "recording/cot/cot_reader.h"
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "emscape/base/geodesy/geoid.h"
 #include "recording/read_recording.h"
 #include "tests/support/errors.h"
 #include "tests/support/stopping.h"

@@ -8,7 +8,6 @@
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "recording/tracks/interpolated_track.h"
-#include "recording/tracks/track_formats.h"
 #include "tests/recording/read_as.h"
 #include "tests/support/errors.h"
 #include "tests/support/reference_data.h"

@@ -13,7 +13,6 @@
 namespace emscape::render {
 namespace {
 
-using testing::makeEmeVolume;
 using testing::makeGround;
 using testing::on;
 using testing::setRandomScene;

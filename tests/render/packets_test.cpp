@@ -1,7 +1,6 @@
 /// Packets of rays on every instruction set that they are built for.
 #include <gtest/gtest.h>
 
-#include <cstdint>
 #include <random>
 
 #include "emscape/render/scene/renderer.h"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "scenario/antenna/pattern.h"
+#include "scenario/antenna/pattern_file.h"
 #include "scenario/antenna/shapes.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/scenario/antenna_files.h"
@@ -17,6 +18,11 @@ const std::string kElevationCut = "elevation_deg,attenuation_db\n-90,40\n-10,3\n
 
 double lossAt_db(const AntennaPtr& antenna, double azimuth_deg, double elevation_deg) {
   return antenna->gain_dbi - gainTowards_dbi(*antenna, towards(azimuth_deg, elevation_deg));
+}
+
+AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
+  std::vector<std::string> warnings;
+  return antennaOf(file, readGridPattern(file), gain_dbi, warnings);
 }
 
 /// Attenuation (dB) of the test's grid: different in every cell.

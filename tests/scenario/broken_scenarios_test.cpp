@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <ostream>
 #include <random>
 #include <vector>
 

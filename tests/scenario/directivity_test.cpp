@@ -1,4 +1,3 @@
-#include "scenario/antenna/directivity.h"
 
 #include <gtest/gtest.h>
 

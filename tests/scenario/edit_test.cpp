@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <random>
 #include <tuple>
 
 #include "document/document.h"
@@ -20,10 +19,7 @@ namespace {
 
 using document::DocumentNode;
 using document::DocumentNodePtr;
-using document::NodeKind;
-using document::ValueType;
 using test::TemporaryFolder;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 const std::string kSmall = R"(# a comment at the top

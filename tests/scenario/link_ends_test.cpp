@@ -29,9 +29,7 @@ emitters:
   std::string refusal(const std::string& sections) {
     const ParseResult result = parse(sections);
     EXPECT_FALSE(result.scenario) << sections;
-    std::string all;
-    for (const Problem& problem : result.problems) all += problem.message + "\n";
-    return all;
+    return test::messagesOf(result);
   }
   std::shared_ptr<const Scenario> valid(const std::string& sections) {
     const ParseResult result = parse(sections);

@@ -14,7 +14,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 std::shared_ptr<const Scenario> quick() {
   return loadScenario(test::shippedScenario("quick.yaml"));

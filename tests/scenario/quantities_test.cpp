@@ -5,7 +5,6 @@
 
 #include <set>
 
-#include "emscape/scenario/model/exposure_limits.h"
 #include "scenario/file/schema.h"
 #include "tests/support/errors.h"
 

@@ -1,6 +1,5 @@
 #include "emscape/scenario/file/scenario_file.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -287,100 +286,12 @@ TEST_F(ScenarioYaml, HashFollowsTheScenarioAndEveryNamedFile) {
 
 TEST_F(ScenarioYaml, MistypedPlacesAndLengthsAreWarningsOfOneLine) {
   const auto warningsWith = [&](const std::string& path, const std::string& value) {
-    std::string all;
-    for (const auto& problem :
-         parseScenario(folder_.write("scenario.yaml", valid_), {{path, value}}).problems)
-      all += problem.message + "\n";
-    return all;
+    return test::messagesOf(parseScenario(folder_.write("scenario.yaml", valid_), {{path, value}}));
   };
   EXPECT_THAT(warningsWith("region.origin.latitude_deg", "45"),
               AllOf(HasSubstr("is outside the region, "), HasSubstr("; likewise '")));
   EXPECT_THAT(warningsWith("region.size_m", "[29, 29, 6000]"),
               HasSubstr("the region is 29 m by 29 m: 'size_m' is in metres, not in kilometres"));
-}
-
-TEST(ScenarioWarnings, NameWhatIsOutsideOfTheTimesOfTheScenario) {
-  const auto warningsOf = [](const std::vector<Edit>& edits) {
-    std::string all;
-    for (const Problem& problem : parseScenario(test::shippedScenario("quick.yaml"), edits).problems)
-      all += problem.message + "\n";
-    return all;
-  };
-  const std::string track =
-      "{points: [{t_s: 1, latitude_deg: 52, longitude_deg: 5, height_agl_m: 50}, {t_s: 3, latitude_deg: 52, "
-      "longitude_deg: 5.1, height_agl_m: 50}]}";
-  EXPECT_THAT(
-      warningsOf({{"platforms.mast.position", "null"}, {"platforms.mast.track", track}}),
-      HasSubstr(
-          "the track of 'mast' runs from 1 to 3 s, the scenario from 0 to 4 s: before 1 s and after 3 s "
-          "the platform is absent, with all that it carries; 'outside: hold'"));
-  EXPECT_THAT(warningsOf({{"platforms.mast.position", "null"},
-                          {"platforms.mast.track", track.substr(0, track.size() - 1) + ", outside: hold}"}}),
-              Not(HasSubstr("the track of")))
-      << "who asks for it knows";
-  EXPECT_THAT(
-      warningsOf({{"emitters.radar.active_s", "[[10, 20]]"}}),
-      HasSubstr("emitter 'radar' is active from 10 s, but the scenario ends at 4 s: it never transmits"));
-  EXPECT_THAT(warningsOf({{"emitters.radar.active_s", "[[2, 20]]"}}), Not(HasSubstr("never transmits")));
-}
-
-TEST(Blinking, IsOnAndOffByTurnsWithinTheActiveTimes) {
-  const auto activeTimes = [](std::vector<Edit> edits) {
-    edits.push_back({"duration_s", "60"});
-    const ParseResult result = parseScenario(test::shippedScenario("quick.yaml"), edits);
-    std::string all;
-    if (!result.scenario) return result.problems.front().message;
-    for (const TimeInterval& time : result.scenario->emitters[1].active_s)
-      all += fmt::format("{:g}-{:g} ", time.begin_s, time.end_s);
-    return all;
-  };
-  const std::string key = "emitters.transmitter.blink";
-  EXPECT_EQ(activeTimes({{key, "{on_s: 10, off_s: 20}"}}), "0-10 30-40 60-61 ");
-  EXPECT_EQ(activeTimes({{key, "{on_s: 10, off_s: 20, begin_s: 15}"}}), "15-25 45-55 ");
-  EXPECT_EQ(activeTimes({{key, "{on_s: 10, off_s: 20, begin_s: 5}"},
-                         {"emitters.transmitter.active_s", "[[8, 20], [40, 100]]"}}),
-            "8-15 40-45 ");
-  EXPECT_THAT(activeTimes({{key, "{on_s: 0.001, off_s: 0.001}"}}),
-              HasSubstr("'transmitter' blinks 30000 times in the 60 s of the scenario, at most 10000"));
-}
-
-TEST(ScenarioWarnings, NameAFilterThatRemovesAllClutter) {
-  const auto warningsOf = [](const std::string& mti) {
-    std::string all;
-    for (const Problem& problem :
-         parseScenario(test::shippedScenario("clutter.yaml"), {{"emitters.search radar.clutter.mti", mti}})
-             .problems)
-      all += problem.message + "\n";
-    return all;
-  };
-  EXPECT_THAT(
-      warningsOf("{kind: canceller, pulses: 2}"),
-      HasSubstr("radar 'search radar': the filter removes all clutter of the surface and of rain, since "
-                "neither its spread ('surface_spread_m_s' and 'rain_spread_m_s') nor a limit of the "
-                "radar ('improvement_limit_db') is given"));
-  EXPECT_THAT(warningsOf("{kind: canceller, pulses: 2, surface_spread_m_s: 0.4}"),
-              HasSubstr("removes all clutter of rain, since neither its spread ('rain_spread_m_s')"));
-  EXPECT_THAT(warningsOf("{kind: canceller, pulses: 2, improvement_limit_db: 50}"),
-              Not(HasSubstr("removes all clutter")));
-}
-
-TEST(ScenarioWarnings, NameTheSpreadOfClutterByAMovingRadar) {
-  const auto warningsWith = [](const std::string& spread) {
-    const std::string position = "latitude_deg: 36.3, longitude_deg: -84.25, height_msl_m: 3000";
-    const std::string track =
-        "{points: [{t_s: 0, " + position +
-        "}, {t_s: 100, latitude_deg: 36.48, longitude_deg: -84.25, height_msl_m: 3000}]}";
-    const ParseResult result =
-        parseScenario(test::shippedScenario("clutter.yaml"),
-                      {{"platforms.ridge site.position", "null"},
-                       {"platforms.ridge site.track", track},
-                       {"emitters.search radar.clutter.mti.surface_spread_m_s", spread}});
-    std::string all;
-    for (const Problem& problem : result.problems) all += problem.message + "\n";
-    return all;
-  };
-  EXPECT_THAT(warningsWith("0.4"), HasSubstr("radar 'search radar' moves at up to 200 m/s"));
-  EXPECT_THAT(warningsWith("20"), Not(HasSubstr("moves at up to")));
 }
 
 TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
@@ -391,25 +302,6 @@ TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
   EXPECT_EQ(result.problems[0].severity, Severity::warning);
   EXPECT_EQ(result.problems[0].message, "emitter 'array radar' (9000000000 Hz) is in none of the bands");
   EXPECT_EQ(result.problems[0].location.line, 39);
-}
-
-TEST(ScenarioWarnings, KindThatConcernsManyEmittersIsOneLine) {
-  test::TemporaryFolder folder;
-  std::string text =
-      "schema_version: 1\nname: many\nregion: {origin: {latitude_deg: 52, longitude_deg: 5}, size_m: [9000, "
-      "9000, "
-      "900], dims: [9, 9, 9]}\nplatforms: [{name: p, position: {latitude_deg: 52, longitude_deg: 5, "
-      "height_agl_m: "
-      "9}}]\nemitters:\n";
-  for (int i = 0; i < 7; ++i) {
-    text += "- {name: e" + std::to_string(i) +
-            ", platform: p, kind: transmitter, frequency_hz: 1e9, power_w: 1, antenna: {pattern: gaussian, "
-            "gain_dbi: 20, beamwidth_az_deg: 60, beamwidth_el_deg: 30}}\n";
-  }
-  const ParseResult result = parseScenario(folder.write("many.yaml", text));
-  ASSERT_EQ(result.problems.size(), 1u);
-  EXPECT_EQ(result.problems[0].location.line, 6);
-  EXPECT_THAT(result.problems[0].message, testing::EndsWith("; likewise 'e1', 'e2', 'e3', 'e4' and 2 more"));
 }
 
 TEST_F(ScenarioYaml, WarnsOfAGainAboveThePatternsDirectivity) {

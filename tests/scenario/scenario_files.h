@@ -5,7 +5,9 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "emscape/scenario/file/scenario_file.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
@@ -28,6 +30,17 @@ inline std::string replaced(std::string text, const std::string& from, const std
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+/// The messages of all problems, one a line.
+inline std::string messagesOf(const ParseResult& result) {
+  std::string all;
+  for (const Problem& problem : result.problems) all += problem.message + "\n";
+  return all;
+}
+/// Those of a shipped scenario with edits.
+inline std::string messagesOf(const std::string& shipped, const std::vector<Edit>& edits) {
+  return messagesOf(parseScenario(shippedScenario(shipped), edits));
 }
 
 }  // namespace emscape::scenario::test

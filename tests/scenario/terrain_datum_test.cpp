@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <vector>
 
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/scenario/terrain/terrain.h"

@@ -15,7 +15,6 @@
 #include "scenario/terrain/file_names.h"
 #include "tests/scenario/dem_file.h"
 #include "tests/support/errors.h"
-#include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace emscape::scenario {

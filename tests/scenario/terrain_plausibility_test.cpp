@@ -9,7 +9,6 @@
 #include <cstring>
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "emscape/scenario/terrain/terrain.h"
 #include "tests/scenario/dem_file.h"

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <random>
 
@@ -16,7 +15,6 @@
 #include "tests/scenario/dem_file.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
-#include "tests/support/reference_data.h"
 #include "tests/support/temporary_folder.h"
 
 namespace emscape::scenario {

@@ -190,12 +190,10 @@ emitters:
     power_w: 100
     antenna: {pattern: gaussian, gain_dbi: 15, beamwidth_az_deg: 30, beamwidth_el_deg: 30}
     scan: {kind: victim, victim: )" + victim + "}\n"));
-    std::string all;
-    for (const Problem& problem : result.problems) all += problem.message + "\n";
     if (result.scenario) {
       EXPECT_EQ(result.scenario->emitters[0].scan.victim, 0);
     }
-    return all;
+    return test::messagesOf(result);
   };
   EXPECT_EQ(problems("jammer\n    bandwidth_hz: 1.0e6", "radar site").find("victim"), std::string::npos);
   EXPECT_THAT(problems("transmitter", "aircraft"), HasSubstr("the platform of 'jammer' itself"));

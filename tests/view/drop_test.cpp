@@ -10,7 +10,6 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <string>
 #include <thread>
 

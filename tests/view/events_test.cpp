@@ -81,9 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Window, Events, testing::ValuesIn(kEvents),
 
 /// A step with a different field.
 TEST_F(WindowEvents, StepSettlesThroughBusyAndRestore) {
-  const ProgramResult result =
-      run(viewOf(shippedScenario("jacksboro.yaml"), scriptOf(R"({"do":"seek","time_s":20})")), environment());
-  ASSERT_EQ(result.status, 0) << result.err;
+  runWell(viewOf(shippedScenario("jacksboro.yaml"), scriptOf(R"({"do":"seek","time_s":20})")), environment());
   expectBusyRestoreIdle(statesAfterTheEvent());
 }
 
@@ -105,8 +103,7 @@ TEST_F(Window, AnEventInRestoreIsAnsweredWithinTwentyMilliseconds) {
 {"do":"quit"}
 )";
   Arguments arguments = viewOf(shippedScenario("jacksboro.yaml"), script);
-  const ProgramResult result = run(arguments, environment());
-  ASSERT_EQ(result.status, 0) << result.err;
+  runWell(arguments, environment());
   std::vector<double> times_ms;
   long long marked = -1;
   for (const Json& line : log()) {

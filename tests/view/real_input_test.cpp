@@ -10,7 +10,6 @@ namespace emscape::test {
 namespace {
 
 using testing::AllOf;
-using testing::EndsWith;
 using testing::Ge;
 using testing::Lt;
 

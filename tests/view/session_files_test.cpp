@@ -8,7 +8,6 @@
 #include "apps/view/files/recent_files.h"
 #include "apps/view/parts/opening.h"
 #include "apps/view/session/session_opener.h"
-#include "emscape/base/error.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/volume/format/file.h"
 #include "tests/view/session_sample.h"

@@ -86,9 +86,15 @@ class Window : public testing::Test {
 
   /// Runs a script to its end.
   ProgramResult runScript(const std::string& script, const Arguments& more = {}) {
-    Arguments arguments = viewOf(quick(), script);
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments, environment());
+    return run(joined(viewOf(quick(), script), more), environment());
+  }
+
+  /// Runs a script and quits; the test fails if a step of it does.
+  void play(const std::string& script, const Arguments& more = {}) {
+    const ProgramResult result = runScript(script + R"({"do":"quit"})"
+                                                    "\n",
+                                           more);
+    EXPECT_EQ(result.status, 0) << result.err;
   }
 
   std::string logFile() const { return folder_ / "log.jsonl"; }

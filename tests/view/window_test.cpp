@@ -23,13 +23,12 @@ int colorsOf(const render::Image8& image) {
 
 TEST_F(Window, ShowsAnExactPictureAndWritesScreenshots) {
   const std::string file = folder_ / "window.png";
-  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
+  play(R"({"do":"wait_state","state":"exact"}
 {"do":"expect","key":"exact","op":"==","value":true}
 {"do":"expect","key":"error","op":"==","value":""}
-{"do":"screenshot","file":")" + file + R"("}
-{"do":"quit"}
+{"do":"screenshot","file":")" +
+       file + R"("}
 )");
-  EXPECT_EQ(result.status, 0) << result.err;
   const render::Image8 picture = render::readPng(file);
   EXPECT_EQ(picture.size.width, 640);
   EXPECT_EQ(picture.size.height, 480);
@@ -40,7 +39,7 @@ TEST_F(Window, ShowsAnExactPictureAndWritesScreenshots) {
 }
 
 TEST_F(Window, CutsTheVolumeOpenAndComparesWithTheOriginal) {
-  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
+  play(R"({"do":"wait_state","state":"exact"}
 {"do":"key","key":"H"}
 {"do":"key","key":"Shift+H"}
 {"do":"plane","index":1,"altitude_m":2000,"flip":true}
@@ -59,27 +58,23 @@ TEST_F(Window, CutsTheVolumeOpenAndComparesWithTheOriginal) {
 {"do":"key","key":"C"}
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"quantity","op":"==","value":"power_density_dbwm2"}
-{"do":"quit"}
 )");
-  EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST_F(Window, DragsOrbitAndThePictureBecomesExactAgain) {
-  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
+  play(R"({"do":"wait_state","state":"exact"}
 {"do":"mouse","x":150,"y":200,"button":"left","to_x":250,"to_y":230}
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"elevation_deg","op":">","value":30}
 {"do":"mouse","x":150,"y":200,"wheel":2}
 {"do":"wait_state","state":"exact"}
-{"do":"quit"}
 )");
-  EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(states(), HasSubstr("BUSY"));
   EXPECT_THAT(states(), testing::EndsWith("IDLE"));
 }
 
 TEST_F(Window, KeysRunTheirActions) {
-  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
+  play(R"({"do":"wait_state","state":"exact"}
 {"do":"key","key":"Right"}
 {"do":"expect","key":"asked_s","op":">","value":0}
 {"do":"key","key":"Home"}
@@ -98,15 +93,14 @@ TEST_F(Window, KeysRunTheirActions) {
 {"do":"key","key":"1"}
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"shown_s","op":"==","value":0}
-{"do":"quit"}
 )");
-  EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST_F(Window, EditsAreComputedUndoneAndRedone) {
   const std::string emitter = "emitters.radar.power_w";
-  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
-{"do":"set","path":")" + emitter + R"(","value":"5"}
+  play(R"({"do":"wait_state","state":"exact"}
+{"do":"set","path":")" +
+       emitter + R"(","value":"5"}
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"error","op":"==","value":""}
 {"do":"expect","key":"edits","op":"==","value":1}
@@ -115,17 +109,16 @@ TEST_F(Window, EditsAreComputedUndoneAndRedone) {
 {"do":"expect","key":"edits","op":"==","value":0}
 {"do":"redo"}
 {"do":"expect","key":"edits","op":"==","value":1}
-{"do":"set","path":")" + emitter + R"(","value":"-5"}
+{"do":"set","path":")" +
+       emitter + R"(","value":"-5"}
 {"do":"expect","key":"error","op":"!=","value":""}
 {"do":"expect","key":"edits","op":"==","value":1}
-{"do":"quit"}
 )");
-  EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST_F(Window, AMarkerIsDraggedAndTheFieldFollows) {
   // The camera's target is the radar; the legend moves it to the left of the middle.
-  const ProgramResult result = runScript(R"({"do":"panel","name":"all","open":false}
+  play(R"({"do":"panel","name":"all","open":false}
 {"do":"pattern","pattern":"quarter"}
 {"do":"camera","spec":"orbit:elevation_deg=89,distance=1.5,target_x_m=0,target_y_m=0,target_z_m=20"}
 {"do":"wait_state","state":"exact"}
@@ -138,9 +131,7 @@ TEST_F(Window, AMarkerIsDraggedAndTheFieldFollows) {
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"edits","op":"==","value":0}
 {"do":"expect","key":"can_undo","op":"==","value":false}
-{"do":"quit"}
 )");
-  EXPECT_EQ(result.status, 0) << result.err;
   const std::vector<Json> edits = log("edit");
   ASSERT_GE(edits.size(), 2U);
   EXPECT_EQ(edits[0]["path"], "platforms.radar site.position.latitude_deg");
@@ -149,7 +140,7 @@ TEST_F(Window, AMarkerIsDraggedAndTheFieldFollows) {
 }
 
 TEST_F(Window, AnOpacityPointIsDraggedInTheCurve) {
-  const ProgramResult result = runScript(R"({"do":"panel","name":"colors","open":true}
+  play(R"({"do":"panel","name":"colors","open":true}
 {"do":"panel","name":"scenario","open":false}
 {"do":"pattern","pattern":"quarter"}
 {"do":"step_voxels","value":0.05}
@@ -171,15 +162,13 @@ TEST_F(Window, AnOpacityPointIsDraggedInTheCurve) {
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"can_undo","op":"==","value":false}
 {"do":"expect","key":"error","op":"==","value":""}
-{"do":"quit"}
 )");
-  EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(states(), HasSubstr("BUSY RESTORE IDLE"));
   EXPECT_THAT(states(), testing::EndsWith("IDLE"));
 }
 
 TEST_F(Window, TheTimeLineIsScrubbedZoomedPannedAndLimited) {
-  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
+  play(R"({"do":"wait_state","state":"exact"}
 {"do":"mouse","x":200,"y":392,"button":"left","to_x":360,"to_y":392}
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"shown_s","op":">","value":1.95}
@@ -205,13 +194,11 @@ TEST_F(Window, TheTimeLineIsScrubbedZoomedPannedAndLimited) {
 {"do":"key","key":"Space"}
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"rate","op":"==","value":-1}
-{"do":"quit"}
 )");
-  EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST_F(Window, SurvivesAnySize) {
-  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
+  play(R"({"do":"wait_state","state":"exact"}
 {"do":"resize","width":1,"height":1}
 {"do":"wait_s","seconds":0.3}
 {"do":"resize","width":300,"height":80}
@@ -227,9 +214,7 @@ TEST_F(Window, SurvivesAnySize) {
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"picture_width","op":"==","value":800}
 {"do":"expect","key":"picture_height","op":"==","value":600}
-{"do":"quit"}
 )");
-  EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST_F(Window, AnExpectationThatIsNotMetEndsWithStatusFive) {
@@ -272,14 +257,14 @@ TEST_F(Window, NamesAreShownToTheirEnd) {
     const std::string plain = "- name: radar\n";
     text.replace(text.find(plain), plain.size(), "- name: '" + name + "'\n");
     writeFile(folder_ / "own.yaml", text);
-    const ProgramResult result = run(viewOf(folder_ / "own.yaml", R"({"do":"wait_state","state":"exact"}
+    runWell(viewOf(folder_ / "own.yaml", R"({"do":"wait_state","state":"exact"}
 {"do":"panel","name":"side"}
 {"do":"wait_s","seconds":0.2}
-{"do":"screenshot","file":")" + (folder_ / "window.png") + R"("}
+{"do":"screenshot","file":")" + (folder_ / "window.png") +
+                                             R"("}
 {"do":"quit"}
 )"),
-                                     environment());
-    EXPECT_EQ(result.status, 0) << result.err;
+            environment());
     const render::Image8 window = render::readPng(folder_ / "window.png");
     std::vector<std::uint8_t> heading;
     for (int y = 109; y < 128; ++y) heading.insert(heading.end(), window.at(345, y), window.at(505, y));
@@ -291,19 +276,15 @@ TEST_F(Window, NamesAreShownToTheirEnd) {
 }
 
 TEST_F(Window, AnInputThatCannotBeOpenedEndsWithItsOwnStatus) {
-  const ProgramResult result =
-      run({"view", quick(), "--quantity", "power_density_dbwm2:none"}, environment());
-  EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.err, HasSubstr("there is no such channel"));
+  EXPECT_THAT(errorOfRun({"view", quick(), "--quantity", "power_density_dbwm2:none"}, 2, environment()),
+              HasSubstr("there is no such channel"));
 }
 
 TEST_F(Window, DrawsAViewAsRenderDoes) {
   const std::string state = folder_ / "a.view.json", shown = folder_ / "shown.png";
-  const ProgramResult saved =
-      run({"render", quick(), "--save-state", state, "--size", "500x300", "--camera",
+  runWell({"render", quick(), "--save-state", state, "--size", "500x300", "--camera",
            "orbit:azimuth_deg=40,elevation_deg=50", "--times", "2", "--theme", "light", "--mode", "mida",
            "--set", "emitters.radar.power_w=777", "-o", folder_ / "rendered.png"});
-  ASSERT_EQ(saved.status, 0) << saved.err;
   writeFile(folder_ / "script.jsonl", R"({"do":"wait_state","state":"exact"}
 {"do":"expect","key":"picture_width","op":"==","value":500}
 {"do":"expect","key":"picture_height","op":"==","value":300}
@@ -314,10 +295,9 @@ TEST_F(Window, DrawsAViewAsRenderDoes) {
 {"do":"expect","key":"error","op":"==","value":""}
 {"do":"quit"}
 )");
-  const ProgramResult result = run({"view", quick(), "--state", state, "--scale", "1.5", "--backend", "cpu",
-                                    "--script", folder_ / "script.jsonl", "--log", logFile()},
-                                   environment());
-  ASSERT_EQ(result.status, 0) << result.err;
+  runWell({"view", quick(), "--state", state, "--scale", "1.5", "--backend", "cpu", "--script",
+           folder_ / "script.jsonl", "--log", logFile()},
+          environment());
   const render::Image8 picture = render::readPng(shown);
   const render::ImageDifference difference =
       render::compare(picture, render::readPng(folder_ / "rendered.png"));
@@ -338,16 +318,14 @@ TEST_F(Window, RestoresEditsAfterAKill) {
   ASSERT_TRUE(comesToLog("autosave"));
   program.signal(SIGKILL);
   program.wait();
-  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
+  play(R"({"do":"wait_state","state":"exact"}
 {"do":"expect","key":"kept","op":"==","value":true}
 {"do":"expect","key":"edits","op":"==","value":0}
 {"do":"restore"}
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"edits","op":"==","value":1}
 {"do":"expect","key":"unsaved","op":"==","value":true}
-{"do":"quit"}
 )");
-  EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(runScript(R"({"do":"wait_state","state":"exact"}
 {"do":"expect","key":"kept","op":"==","value":false}
 {"do":"quit"}
@@ -403,7 +381,7 @@ TEST_F(Window, BrowsesAndOpensAnotherInput) {
   std::filesystem::create_directory(inputs);
   writeFile(inputs + "/a.yaml", readFile(quick()));
   writeFile(inputs + "/b.yaml", readFile(quick()));
-  const ProgramResult result = run(viewOf(inputs + "/a.yaml", R"({"do":"wait_state","state":"exact"}
+  const ProgramResult result = runWell(viewOf(inputs + "/a.yaml", R"({"do":"wait_state","state":"exact"}
 {"do":"key","key":"Ctrl+O"}
 {"do":"wait_s","seconds":0.5}
 {"do":"key","key":"Down"}
@@ -418,8 +396,7 @@ TEST_F(Window, BrowsesAndOpensAnotherInput) {
 {"do":"expect","key":"input","op":"==","value":")" + inputs + R"(/a.yaml"}
 {"do":"quit"}
 )"),
-                                   environment());
-  EXPECT_EQ(result.status, 0) << result.err;
+                                       environment());
 }
 
 TEST_F(Window, WithoutAnInputItAsksForOne) {
@@ -458,9 +435,8 @@ TEST_F(Window, WithoutAnInputItAsksForOne) {
 }
 
 TEST_F(Window, OptionsOfAnInputNeedOne) {
-  const ProgramResult result = run({"view", "--set", "emitters.radar.power_w=5"}, environment());
-  EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.err, HasSubstr("--set needs INPUT"));
+  EXPECT_THAT(errorOfRun({"view", "--set", "emitters.radar.power_w=5"}, 2, environment()),
+              HasSubstr("--set needs INPUT"));
 }
 
 TEST_F(Window, RealEventsOfTheServerArrive) {
@@ -508,8 +484,7 @@ TEST(WindowWithoutProc, StartsNoProgramOfTheCurrentFolder) {
 }
 
 TEST(WindowHelp, ComesFromTheWindow) {
-  const ProgramResult result = run({"view", "--help"});
-  EXPECT_EQ(result.status, 0);
+  const ProgramResult result = runWell({"view", "--help"});
   EXPECT_THAT(result.out, HasSubstr("--script"));
 }
 

@@ -3,7 +3,6 @@
 #include <limits>
 #include <random>
 
-#include "emscape/base/parallel.h"
 #include "tests/volume/sample_volumes.h"
 
 namespace emscape::volume {

@@ -1,5 +1,4 @@
 // setStoredRange(): the range of a finished file, changed without its values.
-#include <algorithm>
 
 #include "emscape/volume/format/file.h"
 #include "tests/volume/sample_volumes.h"

@@ -1,4 +1,4 @@
-#include "volume/sparse/vdb.h"
+#include "volume/format/vdb.h"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>

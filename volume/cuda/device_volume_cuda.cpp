@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <string>
 
 #include "emscape/volume/device_volume.h"

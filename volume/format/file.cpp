@@ -6,8 +6,8 @@
 #include <tuple>
 
 #include "volume/format/raw.h"
+#include "volume/format/vdb.h"
 #include "volume/nvdb/nvdb.h"
-#include "volume/sparse/vdb.h"
 #include "volume/stored_range.h"
 #include "volume/vtk/vti.h"
 

@@ -8,9 +8,9 @@
 
 #include "base/loaded_library.h"
 #include "emscape/base/error.h"
+#include "volume/format/vdb.h"
+#include "volume/format/vdb_functions.h"
 #include "volume/nvdb/nanovdb_grid.h"
-#include "volume/sparse/vdb.h"
-#include "volume/sparse/vdb_functions.h"
 
 #define EMSCAPE_TEXT_OF(name) #name
 #define EMSCAPE_TEXT(name) EMSCAPE_TEXT_OF(name)

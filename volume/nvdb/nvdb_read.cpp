@@ -9,7 +9,6 @@
 #include "volume/foreign.h"
 #include "volume/nvdb/nvdb.h"
 #include "volume/sparse/nanovdb_wrapper.h"
-#include "volume/sparse/sparse.h"
 #include "volume/volume_json.h"
 
 namespace emscape::volume {

@@ -26,7 +26,7 @@ class SparseTiles {
   static constexpr int kMaxAlong = 1 << 10;
 
   EMSCAPE_HD SparseTiles(const SparseTile* tiles, const Dims& dims)
-      : tiles_(tiles), columns_(along(dims.x)), rows_(along(dims.y)) {}
+      : tiles_(tiles), columns_(blocksAlong(dims.x)), rows_(blocksAlong(dims.y)) {}
 
   /// The tile of a voxel.
   EMSCAPE_HD SparseTile at(int i, int j, int k) const {
@@ -41,10 +41,6 @@ class SparseTiles {
   EMSCAPE_HD static int inBlock(int voxel) { return voxel & ((1 << SparseBlock::kEdgeBits) - 1); }
 
  private:
-  EMSCAPE_HD static int along(int voxels) {
-    return (voxels + (1 << SparseBlock::kEdgeBits) - 1) >> SparseBlock::kEdgeBits;
-  }
-
   const SparseTile* tiles_;
   int columns_, rows_;
 };

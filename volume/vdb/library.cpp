@@ -1,4 +1,4 @@
-#include "volume/sparse/vdb_functions.h"
+#include "volume/format/vdb_functions.h"
 
 using namespace emscape;
 

@@ -1,7 +1,7 @@
 // The only unit that converts OpenVDB grids to NanoVDB: it takes long to compile.
 #include <nanovdb/util/OpenToNanoVDB.h>
 
-#include "volume/sparse/vdb_functions.h"
+#include "volume/format/vdb_functions.h"
 #include "volume/vdb/grid.h"
 
 namespace emscape::volume::vdb {

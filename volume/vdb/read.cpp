@@ -12,8 +12,7 @@
 #include "emscape/volume/statistics.h"
 #include "volume/description_check.h"
 #include "volume/foreign.h"
-#include "volume/sparse/sparse.h"
-#include "volume/sparse/vdb_functions.h"
+#include "volume/format/vdb_functions.h"
 #include "volume/vdb/grid.h"
 #include "volume/vdb_layout.h"
 

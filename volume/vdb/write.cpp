@@ -6,7 +6,7 @@
 
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
-#include "volume/sparse/vdb_functions.h"
+#include "volume/format/vdb_functions.h"
 #include "volume/vdb/grid.h"
 #include "volume/vdb_layout.h"
 #include "volume/volume_json.h"

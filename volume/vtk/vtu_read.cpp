@@ -6,7 +6,6 @@
 #include "volume/foreign.h"
 #include "volume/mesh/mesh_file.h"
 #include "volume/volume_json.h"
-#include "volume/voxel_type.h"
 #include "volume/vtk/vtk_xml.h"
 
 namespace emscape::volume {

@@ -7,7 +7,6 @@
 #include "apps/view/panels/panels.h"
 #include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/names.h"
-#include "apps/view/widgets/theme.h"
 #include "base/text/display_units.h"
 
 namespace emscape::view {

@@ -1,7 +1,6 @@
 /// The menus.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 #include <set>
 

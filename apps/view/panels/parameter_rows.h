@@ -1,7 +1,6 @@
 /// Rows of a name and a control; each edits the scenario's value at a path.
 #pragma once
 
-#include <optional>
 #include <set>
 #include <string>
 

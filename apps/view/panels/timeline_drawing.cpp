@@ -1,7 +1,5 @@
 #include "apps/view/panels/timeline_drawing.h"
 
-#include <cmath>
-
 #include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
 

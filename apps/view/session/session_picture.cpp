@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
 
 #include "apps/view/session/session.h"
 #include "apps/view/values/shown_quantity.h"

@@ -1,8 +1,6 @@
 /// Verbs of recording.
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "apps/view/session/session.h"
-#include "apps/view/values/position_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 

@@ -1,10 +1,7 @@
 /// Verbs of colours and opacities, and their source.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <utility>
 
 #include "apps/view/files/file_endings.h"
 #include "apps/view/session/session.h"

@@ -1,7 +1,6 @@
 /// The things of a scenario that can be selected in a picture.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <optional>
-
 #include "apps/view/values/position_text.h"
 #include "base/text/quantity_text.h"
 #include "emscape/base/error.h"

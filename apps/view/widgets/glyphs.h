@@ -6,7 +6,6 @@
 #include <imgui.h>
 
 #include <map>
-#include <set>
 #include <string>
 
 namespace emscape::view {

@@ -6,7 +6,6 @@
 // imgui.h first
 #include <imgui_internal.h>
 
-#include <algorithm>
 #include <functional>
 #include <string>
 

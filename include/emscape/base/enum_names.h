@@ -6,7 +6,6 @@
 ///     using emscape::toString;
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <type_traits>

@@ -12,7 +12,6 @@ namespace {
 
 using render::Canvas;
 using render::Ink;
-using render::PlotAxis;
 using render::PlotPanel;
 using render::Point2;
 

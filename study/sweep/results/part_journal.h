@@ -1,7 +1,6 @@
 /// The finished variants of an incomplete part.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <set>

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "base/files/file_digest.h"
 #include "base/files/json_writing.h"

@@ -12,7 +12,7 @@
 #include "emscape/render/cells/cell_renderer.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/render/scene/camera.h"
-#include "emscape/render/scene/pattern.h"
+#include "emscape/render/scene/frame.h"
 #include "emscape/render/scene/render_settings.h"
 #include "emscape/render/transfer/transfer_function.h"
 #include "emscape/scenario/model/emitter.h"

@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 
-#include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/volume/grid.h"

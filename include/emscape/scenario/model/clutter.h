@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "emscape/base/enum_names.h"
-#include "emscape/scenario/terrain/land_kind.h"
+#include "emscape/scenario/terrain/land_cover.h"
 
 namespace emscape::scenario {
 

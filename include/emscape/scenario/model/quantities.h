@@ -1,6 +1,8 @@
 /// The quantities: requested by scenarios, computed by emfield and stored in volumes.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +54,20 @@ bool hasInterval(const QuantityInfo& quantity, IntervalKind interval);
 bool needsRadar(Quantity quantity);
 /// True for quantities that depend on jamming.
 bool needsJammer(Quantity quantity);
+
+/// The people for whom levels of exposure to radio waves hold.
+enum class ExposureGroup { general_public, occupational };
+constexpr auto namesOf(ExposureGroup) {
+  return std::array{"general_public", "occupational"};
+}
+
+/// Reference level of the incident power density (W/m2) of a plane wave, averaged over the whole body and
+/// over 30 minutes. Below 30 MHz the levels are those of the electric and the magnetic field, of which the
+/// plane wave that reaches the first of them is taken.
+/// @param frequency_hz  without a level outside 100 kHz .. 300 GHz
+/// @see ICNIRP, Guidelines for Limiting Exposure to Electromagnetic Fields (100 kHz to 300 GHz), Health
+/// Physics 118 (2020), table 5
+std::optional<double> referenceLevel_wm2(ExposureGroup group, double frequency_hz);
 
 /// All quantities, in the order of the enum.
 const std::vector<QuantityInfo>& quantityTable();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,16 +13,43 @@
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/edit.h"
 #include "emscape/scenario/model/emitter.h"
-#include "emscape/scenario/model/exposure_limits.h"
 #include "emscape/scenario/model/interval.h"
 #include "emscape/scenario/model/platform.h"
-#include "emscape/scenario/model/receiver.h"
+#include "emscape/scenario/model/quantities.h"
 #include "emscape/scenario/model/target.h"
 #include "emscape/scenario/terrain/terrain.h"
 
 namespace emscape::scenario {
 
 using emscape::toString;
+
+/// A receiver without a platform, which is at every voxel: for received_power_dbm, sinr_db and
+/// intercept_margin_db.
+struct ReceiverProfile {
+  std::string name;
+  double gain_dbi = 0;                                    ///< in every direction
+  double losses_db = 0;                                   ///< between antenna and receiver
+  std::optional<propagation::Polarization> polarization;  ///< none: matched to every emitter
+  /// 0: tuned to every emitter; for links and sinr_db, to the wanted emitter.
+  double center_frequency_hz = 0;
+  double bandwidth_hz = 0;  ///< 0: that of the emitter's signal. Noise requires > 0
+  double cross_polar_isolation_db = kCrossPolarIsolation_db;
+  std::optional<double> noise_figure_db;  ///< referred to 290 K
+  double antenna_temperature_k = 290;     ///< noise from sky and ground
+  /// Thresholds of reception: a signal is received if it meets all given ones. None: not evaluated.
+  std::optional<double> sensitivity_dbm;   ///< minimum power after the losses
+  std::optional<double> required_sinr_db;  ///< minimum signal over noise and interference
+
+  bool hasNoise() const { return noise_figure_db && bandwidth_hz > 0; }
+  bool hasThreshold() const { return sensitivity_dbm || required_sinr_db; }
+};
+
+/// A receiver on a platform, with its own antenna, whose gain replaces `gain_dbi`.
+struct PlacedReceiver : ReceiverProfile {
+  int platform = -1;   ///< index into Scenario::platforms
+  AntennaPtr antenna;  ///< not null
+  ScanSpec scan;
+};
 
 /// The box of the field. altitude: x and y centred on the origin, z upwards from the origin's height above
 /// mean sea level. enu: the same, with z upwards from the tangent point.

@@ -1,7 +1,6 @@
 /// The scenario at one instant: the input of emfield.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
