@@ -26,7 +26,7 @@ class SenderClocks {
     int faults = 0, leads = 0;
   };
   std::map<std::uint32_t, Clock> clocks_;  ///< by site and application
-  bool has_fractions_ = false;  ///< arrivals are not whole seconds
+  bool has_fractions_ = false;             ///< arrivals are not whole seconds
   long long untrusted_ = 0;
 };
 
