@@ -3,13 +3,18 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <ctime>
 
 namespace emscape::app {
 namespace {
 
+constexpr int kStops[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
+
 StopFlag stop{false};
 volatile std::sig_atomic_t signal_caught = 0;
 volatile std::sig_atomic_t ends_at_once = 0;
+volatile std::sig_atomic_t ignores_further = 0;
+timespec first_caught{};
 static_assert(StopFlag::is_always_lock_free, "a signal handler may set only lock-free atomics");
 
 /// Ends the process; calls only functions that a signal handler may call.
@@ -23,10 +28,24 @@ static_assert(StopFlag::is_always_lock_free, "a signal handler may set only lock
   _exit(128 + signal);
 }
 
+/// True within a second of the first signal, which may come twice: `timeout` and schedulers send it to the
+/// process and to its group.
+bool isSameStop() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec - first_caught.tv_sec < (now.tv_nsec < first_caught.tv_nsec ? 2 : 1);
+}
+
 void onSignal(int signal) {
   if (ends_at_once != 0) endAtOnce(signal);
-  signal_caught = signal;
-  stop = true;
+  if (signal_caught == 0) {
+    clock_gettime(CLOCK_MONOTONIC, &first_caught);
+    signal_caught = signal;
+    stop = true;
+  } else if (ignores_further == 0 && signal != SIGXCPU && !isSameStop()) {
+    std::signal(signal, SIG_DFL);
+    raise(signal);
+  }
 }
 
 void catchSignal(int signal) {
@@ -36,8 +55,7 @@ void catchSignal(int signal) {
   struct sigaction action {};
   action.sa_handler = onSignal;
   action.sa_flags = SA_RESTART;
-  // SIGXCPU is repeated each second; the limit's maximum ends the program.
-  if (signal != SIGXCPU) action.sa_flags |= static_cast<int>(SA_RESETHAND);
+  for (const int other : kStops) sigaddset(&action.sa_mask, other);
   sigaction(signal, &action, nullptr);
 }
 
@@ -45,7 +63,11 @@ void catchSignal(int signal) {
 
 void handleSignals() {
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) catchSignal(signal);
+  for (const int signal : kStops) catchSignal(signal);
+}
+
+void ignoreFurtherSignals() {
+  ignores_further = 1;
 }
 
 void endAtInterrupts() {

@@ -5,11 +5,14 @@
 
 namespace emscape::app {
 
-/// Makes the first SIGINT, SIGTERM or SIGHUP set stopFlag(); a second one ends the program at once. So does
-/// SIGXCPU (the limit of processor time), which does not end the program when it is repeated. A signal that
+/// Makes the first SIGINT, SIGTERM or SIGHUP set stopFlag(); a second one, more than a second later, ends the
+/// program at once. SIGXCPU (the limit of processor time, repeated each second) sets it, too. A signal that
 /// is ignored at the start stays ignored. At SIGPIPE (a closed pipe) and SIGXFSZ (the limit of a file's size)
 /// the write fails instead.
 void handleSignals();
+
+/// For processes that another one of this program ends: a signal to the group of both comes from both.
+void ignoreFurtherSignals();
 
 /// For commands that write no files and may spend a long time in a library's reader: from now on the first
 /// signal that handleSignals() catches ends the program at once, with status 128 + N.

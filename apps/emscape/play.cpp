@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <thread>
 
 #include "apps/common/console.h"
@@ -181,6 +182,13 @@ int playAcmi(const PlayArguments& arguments, const GlobalOptions& global) {
   const playback::Address address = playback::parseAddress(arguments.acmi_server, "--acmi-server");
   if (address.isMulticast())
     throw Error(ErrorCode::usage, "--acmi-server " + arguments.acmi_server + ": TCP has no multicast groups");
+  // What is wrong is told before a client is waited for.
+  std::optional<Played> played;
+  std::unique_ptr<interop::ByteSource> source;
+  if (endsWith(arguments.input, ".acmi"))
+    source = interop::openRecording(arguments.input);
+  else
+    played.emplace(arguments);
   playback::AcmiServer server(address, arguments.password);
   const auto serve = [&](double seconds) {
     server.serve(seconds);
@@ -204,15 +212,13 @@ int playAcmi(const PlayArguments& arguments, const GlobalOptions& global) {
     server.send(*line);
     if (++lines % 256 == 0) serve(0);
   };
-  if (endsWith(arguments.input, ".acmi")) {
-    const auto source = interop::openRecording(arguments.input);
+  if (source) {
     interop::LineReader reader(*source);
     for (std::string_view line; reader.next(line);) send(line, reader.isCut());
   } else {
-    const Played played(arguments);
     std::vector<interop::ExportedRow> rows;
     interop::writeAcmi(
-        {*played.scenario, played.terrain.get(), arguments.step_s, {}},
+        {*played->scenario, played->terrain.get(), arguments.step_s, {}},
         [&](const std::string& piece) {
           std::string_view rest = piece;
           while (!rest.empty()) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <sstream>
+#include <vector>
 
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
@@ -130,31 +131,68 @@ std::string joinedCoordinates(std::string text) {
   return joined;
 }
 
-/// Refuses UTM as "16S 733000 4043000" with a northing of MGRS's band S, 32 to 40 degrees north: receivers
-/// write the band after the zone, others S for south. Other northings are south of the equator.
-/// @param coordinates  joinedCoordinates()
-void requireClearSouth(const std::string& coordinates) {
-  constexpr double kBandBegin_m = 3.53e6, kBandEnd_m = 4.44e6;
-  std::string text = coordinates;
+/// A position in UTM: zone with a letter, easting and northing (m).
+struct Utm {
+  std::string zone, easting, northing;
+  char letter = ' ';  ///< of the hemisphere or MGRS's band, in upper case
+  bool is_zone_first = true;
+
+  std::string text(const std::string& side) const {
+    const std::string whole = zone + side;
+    return is_zone_first ? whole + " " + easting + " " + northing : easting + " " + northing + " " + whole;
+  }
+};
+
+/// Reads "19T 316175 4904508", "19 T 316175.0 m E 4904508.0 m N", "316175 4904508 19T"; none for other texts.
+std::optional<Utm> utmOf(std::string text) {
   std::replace(text.begin(), text.end(), ',', ' ');
-  std::istringstream words(text);
-  std::string first, second, third, more;
-  if (!(words >> first >> second >> third) || words >> more) return;
-  const bool is_zone_first = std::isalpha(static_cast<unsigned char>(first.back())) != 0;
-  const std::string &zone = is_zone_first ? first : third, &northing = is_zone_first ? third : second;
-  const std::size_t digits = zone.size() - 1;
-  const bool is_south = (zone.back() == 'S' || zone.back() == 's') && digits >= 1 && digits <= 2 &&
-                        std::all_of(zone.begin(), zone.end() - 1, isDigit);
-  char* end = nullptr;
-  const double north_m = std::strtod(northing.c_str(), &end);
-  if (!is_south || *end != '\0' || !(north_m > kBandBegin_m && north_m < kBandEnd_m)) return;
-  const auto written = [&](const char* side) {
-    const std::string whole = zone.substr(0, digits) + side;
-    return is_zone_first ? whole + " " + second + " " + third : first + " " + second + " " + whole;
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  const auto isLetter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
+  if (words.size() > 3 && words[1].size() == 1 && isLetter(words[1][0]) && isDigit(words[0].back())) {
+    words[0] += words[1];
+    words.erase(words.begin() + 1);
+  }
+  std::vector<std::string> parts;  // without the units and directions of the distances
+  for (const std::string& word : words) {
+    const std::size_t end = word.find_last_not_of("mEN") + 1;
+    if (parts.empty() || end > 2)
+      parts.push_back(parts.empty() ? word : word.substr(0, end));
+    else if (end > 0)
+      parts.push_back(word);
+  }
+  if (parts.size() != 3) return std::nullopt;
+  Utm utm;
+  utm.is_zone_first = isLetter(parts[0].back());
+  const std::string& zone = parts[utm.is_zone_first ? 0 : 2];
+  utm.zone = zone.substr(0, zone.size() - 1);
+  utm.letter = static_cast<char>(std::toupper(static_cast<unsigned char>(zone.back())));
+  utm.easting = parts[utm.is_zone_first ? 1 : 0];
+  utm.northing = parts[utm.is_zone_first ? 2 : 1];
+  const auto isNumber = [](const std::string& number) {
+    return number.find_first_not_of("0123456789.") == std::string::npos;
   };
-  throw Error(ErrorCode::usage, fmt::format("in '{}' {} may be MGRS's band, 32 to 40 degrees north, or south "
-                                            "of the equator; write '{}' or '{}'",
-                                            coordinates, zone.back(), written("north"), written("south")));
+  const bool is_zone = isLetter(utm.letter) && !utm.zone.empty() && utm.zone.size() <= 2 &&
+                       std::all_of(utm.zone.begin(), utm.zone.end(), isDigit);
+  return is_zone && isNumber(utm.easting) && isNumber(utm.northing) ? std::optional(utm) : std::nullopt;
+}
+
+/// As GeographicLib reads it. The letters of MGRS's bands tell the hemisphere, but for S, which is also
+/// south: "16S 733000 4043000" with a northing of the band S, 32 to 40 degrees north, is refused. Other
+/// northings are south of the equator.
+std::string clearUtm(const Utm& utm) {
+  constexpr double kBandBegin_m = 3.53e6, kBandEnd_m = 4.44e6;
+  const double north_m = std::strtod(utm.northing.c_str(), nullptr);
+  if (utm.letter == 'S' && north_m > kBandBegin_m && north_m < kBandEnd_m) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("in '{}' {} may be MGRS's band, 32 to 40 degrees north, or south "
+                    "of the equator; write '{}' or '{}'",
+                    utm.text(std::string(1, utm.letter)), utm.letter, utm.text("north"), utm.text("south")));
+  }
+  const bool is_band = std::string("CDEFGHJKLMPQRTUVWX").find(utm.letter) != std::string::npos;
+  return utm.text(is_band ? (utm.letter < 'N' ? "south" : "north") : std::string(1, utm.letter));
 }
 
 /// True if a word has more than degrees, minutes and seconds: GeographicLib writes beyond its arrays there.
@@ -172,11 +210,13 @@ bool hasTooManyParts(const std::string& text) {
 /// None if it is not a position.
 std::optional<ParsedPosition> parseHorizontal(const std::string& text) {
   const std::string reference = mgrsReference(text);
-  const std::string coordinates = reference.empty() ? joinedCoordinates(text) : reference;
+  const std::optional<Utm> utm = reference.empty() ? utmOf(text) : std::nullopt;
+  const std::string coordinates = utm                 ? clearUtm(*utm)
+                                  : reference.empty() ? joinedCoordinates(text)
+                                                      : reference;
   // One word alone would be a zone of MGRS: an area of hundreds of kilometres.
   if (reference.empty() && coordinates.find_first_of(" ,") == std::string::npos) return std::nullopt;
   if (hasTooManyParts(coordinates)) return std::nullopt;
-  if (reference.empty()) requireClearSouth(coordinates);
   try {
     const GeographicLib::GeoCoords read(coordinates);
     if (!std::isfinite(read.Latitude()) || !std::isfinite(read.Longitude())) return std::nullopt;
@@ -243,7 +283,7 @@ ParsedPosition parsePosition(const std::string& text) {
   throw Error(ErrorCode::usage,
               "'" + whole.substr(0, kMaxText) +
                   "' is not a position such as 36.5,-84.2 or 36.5N 84.2W or "
-                  "36°30'12\"N 84°12'W or 16S GF 12345 67890 or, in UTM, 16north 733000 4043000");
+                  "36°30'12\"N 84°12'W or 16S GF 12345 67890 or, in UTM, 19T 316175 4904508");
 }
 
 std::optional<double> parseCoordinate(const std::string& text, bool is_latitude) {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import sys
 from collections.abc import Sequence
 
@@ -19,6 +20,7 @@ def main() -> int:
     """Serves until the input ends; returns the exit status."""
     file, edits, folder, backend, threads = sys.argv[1:]
     native.set_log(None)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # the file in work is taken back
     try:
         native.serve_study(file, [(path, value) for path, value in json.loads(edits)], folder, backend, int(threads))
     except Error as error:

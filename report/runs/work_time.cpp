@@ -18,6 +18,7 @@
 #include "emscape/emfield/solver/field_solver.h"
 #include "propagation/registry/model_info.h"
 #include "scenario/scan/swept_antenna.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::report {
 namespace {
@@ -28,6 +29,7 @@ using scenario::Scenario;
 
 // Processor times (ns) of the field's loops, one core of 2020.
 constexpr double kColumn_ns = 150;       ///< position and ground of a column of the grid
+constexpr double kOutside_ns = 12;       ///< a post beside the finest raster: found by its position
 constexpr double kPower_ns = 3;          ///< antenna and sum of a voxel and emitter
 constexpr double kEcho_ns = 15;          ///< a radar's look at a voxel
 constexpr double kJammer_ns = 8;         ///< a jammer seen by that look
@@ -43,22 +45,34 @@ double metresApart(const GeodeticPosition& a, const GeodeticPosition& b) {
   return length(toEcef(a) - toEcef(b));
 }
 
-/// Mean length of the paths from an emitter to the region's columns.
-double meanPath_m(const Scenario& scenario, const Emitter& emitter) {
+/// The paths from an emitter to the region's columns.
+struct Paths {
+  double mean_m = 0;
+  double outside = 0;  ///< part of their middles that the finest raster does not hold
+};
+
+Paths pathsOf(const Scenario& scenario, const scenario::Terrain* terrain, const Emitter& emitter) {
   constexpr int kSamples = 5;
   const volume::Grid grid = emfield::gridOf(scenario.region);
   const GeoFrame frame(grid.frame);
   const scenario::SitePosition& site =
       scenario.platforms[static_cast<std::size_t>(emitter.platform)].track.front().position;
-  double sum_m = 0;
+  const bool has_raster = terrain != nullptr && terrain->view().count > 0;
+  Paths paths;
   for (int n = 0; n < kSamples * kSamples; ++n) {
     const int i = (2 * (n % kSamples) + 1) * grid.dims.x / (2 * kSamples);
     const int j = (2 * (n / kSamples) + 1) * grid.dims.y / (2 * kSamples);
     const GeodeticPosition column = frame.toGeodetic(grid.center_m(i, j, 0));
-    sum_m += metresApart({site.latitude_deg, site.longitude_deg, 0},
-                         {column.latitude_deg, column.longitude_deg, 0});
+    constexpr double kEach = 1.0 / (kSamples * kSamples);
+    paths.mean_m += kEach * metresApart({site.latitude_deg, site.longitude_deg, 0},
+                                        {column.latitude_deg, column.longitude_deg, 0});
+    const double middle_deg =
+        site.longitude_deg + std::remainder(column.longitude_deg - site.longitude_deg, 360.0) / 2;
+    if (has_raster && std::isnan(terrain->view().rasters[0].heightAt(
+                          degToRad((site.latitude_deg + column.latitude_deg) / 2), degToRad(middle_deg))))
+      paths.outside += kEach;
   }
-  return sum_m / (kSamples * kSamples);
+  return paths;
 }
 
 /// The sweep of an emitter's beam in the interval that begins at a time, and a radar's looks.
@@ -110,7 +124,7 @@ double triedPositions(const Scenario& scenario, const Emitter& emitter, const sc
   if (propagation::modelInfo(emitter.propagation.model).has_reflected_ray) return arcs + 2 * all;
   const double eirp_w = emitter.power_w * dbToRatio(emitter.antenna->gain_dbi - emitter.losses_db);
   const double side_lobes = std::pow(double(emitter.antenna->view().side_lobe_amplitude), 2);
-  const double mean_path_m = meanPath_m(scenario, emitter);
+  const double mean_path_m = pathsOf(scenario, nullptr, emitter).mean_m;
   constexpr double kPaths[] = {0.3, 0.7, 1.3}, kHalfPower_db = 3;
   double reached = 0;
   for (const double part : kPaths) {
@@ -229,8 +243,10 @@ WorkTime workTimeOf(const Scenario& scenario, const scenario::Terrain* terrain,
     const Emitter& emitter = scenario.emitters[e];
     if (!emitter.enabled) continue;
     const propagation::ModelCost& cost = propagation::modelInfo(emitter.propagation.model).cost;
-    const double posts = terrain == nullptr ? 0 : meanPath_m(scenario, emitter) / post_m;
-    double once_ns = (cost.column_ns + cost.post_ns * posts) * columns + 1e9 * cost.emitter_s +
+    const Paths paths = pathsOf(scenario, terrain, emitter);
+    const double posts = terrain == nullptr || cost.post_ns == 0 ? 0 : paths.mean_m / post_m;
+    const double post_ns = cost.post_ns + kOutside_ns * paths.outside;
+    double once_ns = (cost.column_ns + post_ns * posts) * columns + 1e9 * cost.emitter_s +
                      (terrain == nullptr ? cost.voxel_ns : cost.voxel_over_terrain_ns) * voxels;
     for (const emfield::EmitterChoice& choice : choices) {
       if (choice.emitter == emitter.name) once_ns += 1e9 * choice.time_s;

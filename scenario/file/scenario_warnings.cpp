@@ -274,13 +274,15 @@ void warnOfPlatformsFarOutside(const Scenario& scenario, const Section& root, Pa
 struct TrackLeg {
   double length_m, time_s;
 };
+/// Times of recordings have a resolution.
+constexpr double kShortestStep_s = 1e-3;
 
 /// The leg to a point of a track.
 TrackLeg legTo(const std::vector<TrackPoint>& track, std::size_t k) {
   const SitePosition &from = track[k - 1].position, &to = track[k].position;
   return {
       geodesicInverse(from.latitude_deg, from.longitude_deg, to.latitude_deg, to.longitude_deg).distance_m,
-      std::max(track[k].t_s - track[k - 1].t_s, interop::kShortestStep_s)};
+      track[k].t_s - track[k - 1].t_s};
 }
 
 /// Warns about tracks whose legs are faster than any object.
@@ -290,13 +292,15 @@ void warnOfSpeeds(const Scenario& scenario, const Section& root, ParseContext& c
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const std::vector<TrackPoint>& track = scenario.platforms[i].track;
     for (std::size_t k = 1; k < track.size(); ++k) {
-      const auto [leg_m, leg_s] = legTo(track, k);
-      if (leg_m <= interop::kFastest_mps * leg_s) continue;
+      const TrackLeg leg = legTo(track, k);
+      if (leg.length_m <= interop::kFastest_mps * std::max(leg.time_s, interop::kShortestStep_s)) continue;
       const std::string& name = scenario.platforms[i].name;
-      warning.add(sections[i].locationOf("track"), name,
-                  fmt::format("the track of '{}' moves {:.4g} km from {:g} to {:g} s, at {:.4g} km/s: faster "
-                              "than any object (10 km/s); are the times in seconds?",
-                              name, leg_m / 1000, track[k - 1].t_s, track[k].t_s, leg_m / leg_s / 1000));
+      warning.add(
+          sections[i].locationOf("track"), name,
+          fmt::format("the track of '{}' moves {:.4g} km from {:.10g} to {:.10g} s, at {:.4g} km/s: faster "
+                      "than any object (10 km/s); are the times in seconds?",
+                      name, leg.length_m / 1000, track[k - 1].t_s, track[k].t_s,
+                      leg.length_m / leg.time_s / 1000));
       break;
     }
   }
@@ -414,7 +418,8 @@ double topSpeed_mps(const Platform& platform) {
   double largest_mps = 0;
   for (std::size_t k = 1; k < platform.track.size(); ++k) {
     const TrackLeg leg = legTo(platform.track, k);
-    if (!platform.track[k - 1].gap_after) largest_mps = std::max(largest_mps, leg.length_m / leg.time_s);
+    if (!platform.track[k - 1].gap_after)
+      largest_mps = std::max(largest_mps, leg.length_m / std::max(leg.time_s, kShortestStep_s));
   }
   return largest_mps;
 }

@@ -93,10 +93,18 @@ struct PointColumns {
     }
   }
   bool arePositions() const { return (latitude != kNone || position != kNone) && !has_geometry; }
+  /// True for the height that is used, and one that contradicts it if it is not the same.
+  bool isCompared(std::size_t column) const {
+    return std::any_of(heights.begin(), heights.end(), [&](const Height& height) {
+      const bool is_first = &height == &heights.front();
+      return height.column == column && (is_first || (heights.front().reference != HeightReference::agl &&
+                                                      height.reference != HeightReference::agl &&
+                                                      height.reference != heights.front().reference));
+    });
+  }
   bool isUsed(std::size_t column) const {
     return column == latitude || column == longitude || column == position || column == name ||
-           (!heights.empty() && column == heights.front().column) || column == north_or_south ||
-           column == east_or_west;
+           column == north_or_south || column == east_or_west || isCompared(column);
   }
 };
 

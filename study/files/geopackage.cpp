@@ -74,15 +74,6 @@ std::string hexOf(const render::Rgb& color) {
   return fmt::format("#{:02x}{:02x}{:02x}", level(color.r), level(color.g), level(color.b));
 }
 
-/// GDAL's reason without the SQL statement that failed.
-[[noreturn]] void failWithoutSql(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
-  std::string text = messages.explain("cannot be written");
-  const std::string after = ") failed: ";
-  const std::size_t begin = text.find("sqlite3_"), end = text.rfind(after);
-  if (begin < end && end != std::string::npos) text.erase(begin, end + after.size() - begin);
-  throw Error(ErrorCode::other, file.string() + ": " + text);
-}
-
 class GeoPackage : public MapCollection {
  public:
   GeoPackage(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
@@ -142,7 +133,7 @@ class GeoPackage : public MapCollection {
   };
 
   void check(const Scope& scope, bool is_done) const {
-    if (!is_done || scope.messages.hasFailure()) failWithoutSql(scope.messages, file_.file());
+    if (!is_done || scope.messages.hasFailure()) failWriting(scope.messages, file_.file());
   }
 
   void makeLayers(const Scope& scope) {

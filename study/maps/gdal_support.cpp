@@ -1,15 +1,37 @@
 #include "study/maps/gdal_support.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
-#include <system_error>
 
+#include "base/files/descriptor.h"
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
 #include "emscape/base/work.h"
 
 namespace emscape::study {
+namespace {
+
+/// Why a file beside this one cannot be written: the libraries below GDAL (HDF5) lose the system's reason.
+/// 0: it can be, or a trial is not possible.
+int causeOfFailedWriting(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const Descriptor trial(::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600));
+  if (!trial.isOpen()) return errno == ENOSPC || errno == EDQUOT || errno == EROFS ? errno : 0;
+  const std::string bytes(std::size_t{1} << 16, '\1');
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t written = ::write(trial.number(), bytes.data() + done, bytes.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return errno;
+    done += static_cast<std::size_t>(written);
+  }
+  return 0;
+}
+
+}  // namespace
+
 GDALDriverH driverOf(const char* name) {
   gdal::prepare();
   GDALDriverH driver = GDALGetDriverByName(name);
@@ -18,12 +40,17 @@ GDALDriverH driverOf(const char* name) {
 }
 
 void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
-  const int cause = errno;
+  int cause = errno;
   checkpoint();
   std::string text = messages.explain("cannot be written");
+  // The SQL statement that failed tells nothing.
+  const std::string after = ") failed: ";
+  const std::size_t begin = text.find("sqlite3_"), end = text.rfind(after);
+  if (begin < end && end != std::string::npos) text.erase(begin, end + after.size() - begin);
   // GDAL does not always say why.
   const bool is_limit = cause == EMFILE || cause == ENFILE || cause == ENOSPC || cause == EDQUOT;
-  if (!messages.hasFailure() && is_limit) text += ": " + std::generic_category().message(cause);
+  if (messages.hasFailure() || !is_limit) cause = causeOfFailedWriting(file);
+  if (cause != 0 && text.find(causeOf(cause)) == std::string::npos) text += ": " + causeOf(cause);
   throw Error(ErrorCode::other, file.string() + ": " + text);
 }
 

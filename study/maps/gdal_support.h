@@ -13,7 +13,7 @@ namespace emscape::study {
 /// @throws Error (other) if GDAL was built without it
 GDALDriverH driverOf(const char* name);
 
-/// @throws Error (other) that names the file and GDAL's reason; Stopped
+/// @throws Error (other) that names the file, GDAL's reason and, where it is known, the system's; Stopped
 [[noreturn]] void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file);
 
 /// For long calls of GDAL: they end as failed once the work is stopped, and failWriting() throws Stopped.

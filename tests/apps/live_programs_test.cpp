@@ -99,9 +99,15 @@ TEST(LivePrograms, FaultsNameOptionValueAndRemedy) {
   EXPECT_THAT(errorOfRun({"live", "--acmi", freePort(), "--base", quick()}, 1),
               HasSubstr("no program listens there"));
   EXPECT_THAT(errorOfRun({"play", quick()}, 2), HasSubstr("--dis-out"));
-  EXPECT_THAT(
-      errorOfRun({"play", quick(), "--dis-out", freePort(), "--set", "duration_s=1e6", "--step", "0.01"}, 2),
-      HasSubstr("more than the allowed"));
+  for (const char* const way :
+       {"--dis-out", "--cot-out", "--acmi-server"}) {  // before a client is waited for
+    EXPECT_THAT(errorOfRun({"play", shippedScenario("jamming.yaml"), way, freePort(), "--set",
+                            "duration_s=1e6", "--step", "0.01"},
+                           2),
+                HasSubstr("more than the allowed"));
+  }
+  EXPECT_THAT(errorOfRun({"play", "missing.acmi", "--acmi-server", freePort()}, 3),
+              HasSubstr("missing.acmi"));
   EXPECT_THAT(errorOfRun({"play", "a.pcap", "--acmi-server", "3000"}, 2),
               HasSubstr("`emscape import` makes a scenario"));
 }

@@ -146,6 +146,32 @@ TEST(Study, ASignalIsReportedOnceForAllProcesses) {
   EXPECT_EQ(result.err.find("stopped by signal"), result.err.rfind("stopped by signal")) << result.err;
 }
 
+/// As schedulers and terminals do: the parent then ends its processes, which have had the signal, too.
+TEST(Study, SLOW_ASignalToTheWholeGroupLeavesNothingUnfinished) {
+  const TemporaryFolder folder;
+  const std::string file = study(folder, 60);
+  for (int trial = 0; trial < 20; ++trial) {
+    const std::string out = folder / ("out" + std::to_string(trial));
+    RunningProgram running({"study", file, "-o", out, "--jobs", "2", "--keep", "maps"});
+    pid_t program = 0;
+    for (int wait = 0; wait < 600 && program == 0; ++wait) {
+      usleep(10000);
+      for (const pid_t child : childrenOf(getpid())) {
+        if (childrenOf(child).size() == 2) program = child;
+      }
+    }
+    ASSERT_NE(program, 0);
+    while (!std::filesystem::exists(out + "/variants")) usleep(1000);
+    usleep(static_cast<useconds_t>(50000 + 17000 * trial));
+    const int signal = trial % 2 == 0 ? SIGTERM : SIGINT;
+    for (const pid_t worker : childrenOf(program)) kill(worker, signal);
+    running.signal(signal);
+    EXPECT_EQ(running.wait().status, 128 + signal) << trial;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(out))
+      EXPECT_EQ(entry.path().string().find(".part-"), std::string::npos) << entry.path();
+  }
+}
+
 /// Number of times that each variant is in the journals of a folder.
 std::map<int, int> variantsInJournals(const std::filesystem::path& parts) {
   std::map<int, int> counts;

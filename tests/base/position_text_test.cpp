@@ -105,6 +105,22 @@ TEST(ParsePosition, RefusesAZonesSThatMayBeABandOrSouth) {
   EXPECT_NEAR(parsePosition("16N 733000 404300").latitude_deg, 3.66, 0.01) << "band N is in the north";
 }
 
+TEST(ParsePosition, ReadsUtmWithTheBandOfMgrsAfterTheZone) {
+  for (const char* const text :
+       {"19T 316175 4904508", "19t 316175 4904508", "19 T 316175 4904508", "19T,316175,4904508",
+        "316175 4904508 19T", "19T 316175.00 m E 4904508.00 m N", "19 T 316175mE 4904508mN",
+        "19T 316175E 4904508N"}) {
+    const ParsedPosition read = parsePosition(text);  // by gdaltransform -s_srs EPSG:32619
+    EXPECT_NEAR(read.latitude_deg, 44.270596, 2e-6) << text;
+    EXPECT_NEAR(read.longitude_deg, -71.303300, 2e-6) << text;
+  }
+  EXPECT_EQ(parsePosition("19T 316175 4904508, 150").height_m, 150);
+  EXPECT_NEAR(parsePosition("56H 334000 6252000").latitude_deg, -33.86, 0.01);
+  EXPECT_NEAR(parsePosition("36 N 84 W").latitude_deg, 36, 1e-9) << "no zone";
+  EXPECT_THAT(test::errorOf([] { parsePosition("19I 316175 4904508"); }),
+              testing::HasSubstr("not a position"));
+}
+
 TEST(CoordinateText, HasTheDigitsOfTheStep) {
   EXPECT_EQ(coordinateText(36.25, true, PositionFormat::decimal, 0.25), "36.25°N");
   EXPECT_EQ(coordinateText(-84.5, false, PositionFormat::decimal, 0.5), "84.5°W");

@@ -9,6 +9,7 @@ usage: option_pairs.py EMSCAPE SCENARIO_FOLDER [--pairs N] [--seed N] [SUBCOMMAN
 """
 
 import argparse
+import os
 import random
 import re
 import shutil
@@ -17,7 +18,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-# What each subcommand needs; {q}: a scenario, {l}: one with links, {v}: a series of volumes, {t}: elevations, {o}: an output.
+# What each subcommand needs; {q}: a scenario, {l}: one with links, {v}: a series of volumes, {t}: elevations, {r}: a recording,
+# {w}: a script of the window, {o}: an output.
 BASE = {
     "simulate": "simulate {q} -o {o}/s --set region.dims=[8,8,4] --set duration_s=1",
     "render": "render {q} -o {o}/a.png --size 64x48 --times 0 --set region.dims=[8,8,4]",
@@ -30,6 +32,10 @@ BASE = {
     "info": "info {v}",
     "validate": "validate {q}",
     "terrain": "terrain {t}",
+    "blockage": "blockage {l} --emitter mast --beamwidth 2 --elevation 0 --range 9000 -o {o}/b.nc",
+    "import": "import {r} --emitters {r}.emitters.yaml -o {o}/i.yaml",
+    "export": "export {q} -o {o}/e.czml",
+    "view": "view {q} --backend cpu --script {w}",
 }
 # Global options, those that wait for a network or a person, and those that start other machinery.
 LEFT_OUT = {"--help", "--version", "--licences", "--realtime", "--verify", "--quiet", "--duration", "--serve", "--submit"}
@@ -119,10 +125,12 @@ def main():
         scenarios = work / "scenarios"  # a copy: -o may name a scenario, which is then replaced as any file that is named
         shutil.copytree(given.scenarios, scenarios)
         names = {"q": scenarios / "quick.yaml", "l": scenarios / "links.yaml", "v": work / "volumes",
-                 "t": scenarios / "data" / "jacksboro.tif", "o": "{o}"}
+                 "t": scenarios / "data" / "jacksboro.tif", "r": scenarios / "recordings" / "jamming.pcap", "w": work / "script.jsonl",
+                 "o": "{o}"}
+        names["w"].write_text('{"do": "wait_frame"}\n{"do": "quit", "edits": "discard"}\n')
         subprocess.run([given.emscape, "-q", *BASE["simulate"].format(**{**names, "o": work}).split()], check=True)
         (work / "s").rename(work / "volumes")
-        for subcommand in given.subcommands or BASE:
+        for subcommand in given.subcommands or [name for name in BASE if name != "view" or "DISPLAY" in os.environ]:
             random_ = random.Random(f"{given.seed} {subcommand}")
             options = [option for option in options_of(given.emscape, subcommand) if option[0] not in BASE[subcommand].split()]
             if len(options) < FEW:

@@ -206,6 +206,25 @@ TEST(DisRecorder, SendersClockIsUsedWhereItAgreesWithTheArrivals) {
   EXPECT_TRUE(r.tally.notes.empty());
 }
 
+TEST(DisRecorder, AReplayFasterThanItsTimestampsLosesNothingAndIsTimedByItsArrivals) {
+  for (const double rate : {2.0, 5.0, 100.0}) {
+    Stream stream;
+    for (int i = 0; i < 200; ++i) {
+      const double arrival_s = 7 + 0.1 * i + (i % 3 == 1 ? 0.02 : 0);
+      stream.sendAt(arrival_s, 10 + rate * 0.1 * i, stateAt(36 + 0.001 * i, -84));
+    }
+    const Recording r = stream.finish();
+    const auto& poses = r.objects.at(0).poses;
+    ASSERT_EQ(poses.size(), 200u) << rate;
+    for (std::size_t i = 1; i < poses.size(); ++i) {
+      EXPECT_GT(poses[i].t_s, poses[i - 1].t_s) << rate;
+      EXPECT_NEAR(poses[i].t_s, 0.1 * static_cast<double>(i), 0.13) << rate;
+    }
+    ASSERT_EQ(r.tally.notes.size(), 1u) << rate;
+    EXPECT_THAT(r.tally.notes[0], HasSubstr("do not agree with their arrivals")) << rate;
+  }
+}
+
 TEST(DisRecorder, ArrivalsAreUsedWhereTimestampsAreACounter) {
   Stream stream;
   for (int i = 0; i < 10; ++i) stream.sendAt(5 * i, 1e-6 * i, stateAt(36 + 0.001 * i, -84));

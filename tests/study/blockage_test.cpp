@@ -13,6 +13,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "tests/scenario/dem_file.h"
 #include "tests/support/errors.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -152,6 +153,19 @@ TEST_F(BeamBlockage, IsWrittenOverAzimuthAndRangeWithThePositionsOfTheGates) {
   EXPECT_NEAR(longitude_deg[gate], expected.longitude_deg, 1e-4);
   EXPECT_FLOAT_EQ(static_cast<float>(part[gate]), blockage.cumulative[gate]);
   EXPECT_NEAR(beam_m[gate], blockage.axis_msl_m(blockage.gate_m(20)), 0.01);
+}
+
+TEST_F(BeamBlockage, AFullDiskIsNamedAsTheCause) {
+  BlockageRequest request;
+  request.range_m = 60e3;
+  const Blockage blockage = computeBlockage(scenario_, request);
+  for (const rlim_t bytes : {0, 4000, 20000}) {
+    const test::FileSizeLimit limit(bytes);
+    EXPECT_THAT(test::errorOf([&] { writeBlockageNetcdf(blockage, folder_ / "full.nc"); }),
+                testing::AllOf(HasSubstr("full.nc: cannot"), HasSubstr("File too large")))
+        << bytes;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "full.nc"));
+  }
 }
 
 TEST_F(BeamBlockage, EndsByDefaultWithTheLastGateOverKnownGround) {

@@ -158,7 +158,10 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   Stopwatch watch;
   const int threads = global.threads > 0 ? global.threads : study::allowedProcessors();
   setThreadLimit(threads);
-  if (command.worker) setLogSink([](LogLevel, const std::string&) {});  // the parent process logs
+  if (command.worker) {
+    ignoreFurtherSignals();
+    setLogSink([](LogLevel, const std::string&) {});  // the parent process logs
+  }
   if (!command.plan && command.folder.empty()) {
     throw Error(ErrorCode::usage, "--output is required, except with --plan");
   }

@@ -65,11 +65,13 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
   ~Worker() {
-    if (process_ > 0) {
-      kill(process_, SIGTERM);
-      finish();
-    }
+    stop();
+    if (process_ > 0) finish();
     close(from_);
+  }
+
+  void stop() const {
+    if (process_ > 0) kill(process_, SIGTERM);
   }
 
   int descriptor() const { return from_; }
@@ -107,6 +109,19 @@ class Worker {
   pid_t process_ = -1;
   int to_ = -1, from_ = -1;
   int part_ = 0;
+};
+
+/// Processes that compute at the same time; an empty one has ended.
+struct Workers : std::vector<std::unique_ptr<Worker>> {
+  using vector::vector;
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+  /// Stops all before the first is waited for.
+  ~Workers() {
+    for (const auto& worker : *this) {
+      if (worker) worker->stop();
+    }
+  }
 };
 
 /// The remaining parts, in one contiguous range per worker, so that a worker computes successive parts.
@@ -149,7 +164,7 @@ void computeInProcesses(const std::vector<int>& parts, int jobs, const std::vect
                         const ProgressSink& progress) {
   const std::size_t count = std::min(static_cast<std::size_t>(jobs), parts.size());
   Stretches left(parts, count);
-  std::vector<std::unique_ptr<Worker>> workers(count);
+  Workers workers(count);
   struct Deaths {
     int count = 0;
     std::uintmax_t finished_bytes = 0;  ///< at the last death

@@ -13,6 +13,7 @@
 #include "emscape/base/error.h"
 #include "scenario/terrain/gdal_messages.h"
 #include "study/maps/gdal_arrays.h"
+#include "study/maps/gdal_support.h"
 
 namespace emscape::study {
 namespace {
@@ -219,9 +220,7 @@ void writeResultsNetcdf(const std::filesystem::path& file, const StudySpec& stud
     const StudyMeasure& measure = study.measures[m];
     writer.numbers(measure.name, dimensions, values, measure.name, udunit(unitOf(measure)));
   }
-  if (!writer.close() || messages.hasFailure()) {
-    throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
-  }
+  if (!writer.close() || messages.hasFailure()) failWriting(messages, file);
   unfinished.publish();
 }
 
