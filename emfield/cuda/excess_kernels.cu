@@ -125,8 +125,7 @@ __global__ void __launch_bounds__(kColumnThreads)
   const ColumnPart part{begin, end, memory_db};
   const unsigned warnings = task.model.fill(begun.column, scratch, part, excess_db);
   note(to, run.first + n, warnings);
-  task.addTerminal(c, run.segment, begun.column, begin, end, excess_db);
-  task.addAir(c, run.segment, begun.column, begin, end, excess_db);
+  task.addEnds(c, run.segment, begun.column, begin, end, excess_db);
   for (int k = begin; k < end; ++k) to.out.excess.set(voxel(k), excess_db[k]);
 }
 

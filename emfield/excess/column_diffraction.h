@@ -13,6 +13,7 @@
 #include "emfield/excess/fill_excess.h"
 #include "emfield/ground/column_posts.h"
 #include "propagation/diffraction/excess.h"
+#include "propagation/diffraction/smooth_earth.h"
 
 namespace emscape::emfield {
 
@@ -40,42 +41,12 @@ EMSCAPE_NOINLINE EMSCAPE_HD inline float effectiveHeight_m(const Station& statio
       station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m), station.height_msl_m, range_m));
 }
 
-/// Bullington's nu over a smooth earth with posts at the same ranges, as propagation::bullingtonNu. A
-/// separate call.
-/// @param heights  of the antennas above it
+/// A separate call, too.
 EMSCAPE_NOINLINE EMSCAPE_HD inline float smoothEarthNu(const DiffractionModel<float>& model,
                                                        ColumnPosts& posts, float distance_m,
                                                        const EffectiveHeights<float>& heights) {
-  const float k = model.half_curvature, d = distance_m, tx_m = heights.tx_m, rx_m = heights.rx_m;
-  // Largest slope from an antenna: at its horizon, that is at one of the posts on either side of it.
-  const auto largest = [](const PostsAround& around, const auto& slopeAt) {
-    return fmaxf(around.before_m > 0 ? slopeAt(around.before_m) : -HUGE_VALF,
-                 around.after_m < HUGE_VALF ? slopeAt(around.after_m) : -HUGE_VALF);
-  };
-  const float tx_slope = largest(posts.around(std::sqrt(tx_m / k)),
-                                 [=](float range_m) { return k * (d - range_m) - tx_m / range_m; });
-  const float slope_to_rx = (rx_m - tx_m) / d;
-  if (tx_slope >= slope_to_rx) {
-    const float rx_slope = largest(posts.around(fmaxf(d - std::sqrt(rx_m / k), 0)),
-                                   [=](float range_m) { return k * range_m - rx_m / (d - range_m); });
-    return bullingtonEdgeNu(model, d, slope_to_rx, tx_slope, rx_slope);
-  }
-  // The square of the clearance over d1 d2 has a single minimum between antennas that are not below ground:
-  // where its logarithm's derivative changes its sign.
-  float nearer_m = 0, farther_m = d;
-  for (int i = 0; i < 24; ++i) {
-    const float at_m = (nearer_m + farther_m) / 2, beyond_m = d - at_m;
-    const float clearance_m = tx_m + slope_to_rx * at_m - k * at_m * beyond_m;
-    const float rise = slope_to_rx - k * (beyond_m - at_m);
-    const bool falls = 2 * rise * at_m * beyond_m < clearance_m * (beyond_m - at_m);
-    nearer_m = falls ? at_m : nearer_m;
-    farther_m = falls ? farther_m : at_m;
-  }
-  return largest(posts.around(nearer_m), [=](float range_m) {
-    const float beyond_m = d - range_m;
-    return -(tx_m + slope_to_rx * range_m - k * range_m * beyond_m) *
-           std::sqrt(2 * d / (model.earth.wavelength_m * range_m * beyond_m));
-  });
+  return propagation::smoothEarthNu(model, distance_m, heights,
+                                    [&](float range_m) { return posts.around(range_m); });
 }
 
 /// A post seen from the transmitter. Heights are above it; "plain" ones leave out the earth's bulge.
@@ -196,9 +167,7 @@ class Receivers {
   /// @return false if terrain is missing along the profile
   template <int kReceivers>
   EMSCAPE_HD bool survey(float lowest_m, float highest_m, const float* rx_m, Maxima* most) {
-    const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
-    has_earth_ =
-        !isClearThroughout(earth, distance_m_, sightLine(earth, distance_m_, tx_m_, lowest_m - ground_m_));
+    has_earth_ = !isClearThroughout(task_.model.model.earth, distance_m_, tx_m_, lowest_m - ground_m_);
     if (has_earth_) {
       fitTrend();
       has_earth_ = isInEarth(lowest_m);
@@ -395,20 +364,13 @@ class Receivers {
   }
 
   EMSCAPE_HD TerrainTrend<float> trend() const {
-    TerrainTrend<float> trend;
-    trend.start_msl_m = trend_start_m_;
-    trend.end_msl_m = trend_end_m_;
-    trend.highest_m = trend.tx_angle = trend.rx_angle = -HUGE_VALF;
-    trend.tx_ground_msl_m = 0;
-    trend.rx_ground_msl_m = ground_m_;
-    return trend;
+    return propagation::clearTrend(trend_start_m_, trend_end_m_, ground_m_);
   }
   /// False if the smooth earth has no loss for a receiver and those above; see LaneColumn.
   EMSCAPE_HD bool isInEarth(float rx_m) const {
     if (!has_earth_) return false;
     const EffectiveHeights<float> least = effectiveHeights(trend(), tx_m_, rx_m);
-    const propagation::SphericalEarth<float>& earth = task_.model.model.earth;
-    return !isClearThroughout(earth, distance_m_, sightLine(earth, distance_m_, least.tx_m, least.rx_m));
+    return !isClearThroughout(task_.model.model.earth, distance_m_, least.tx_m, least.rx_m);
   }
   /// Smooth-earth correction (dB): the spherical earth's loss minus Bullington's, at least 0.
   EMSCAPE_HD float earthCorrectionDb(float rx_m, const Maxima& most) const {
@@ -416,13 +378,13 @@ class Receivers {
     over.highest_m = most.plain_height_m;
     over.tx_angle = plain_tx_slope_ - slopeTo(rx_m);
     over.rx_angle = most.plain_rx_slope;
-    const EffectiveHeights<float> heights = effectiveHeights(over, tx_m_, rx_m);
     propagation::SphericalEarth<float> earth = task_.model.model.earth;
     earth.sea_fraction = sea_fraction_;
-    const float spherical_db = sphericalEarthLossDb(earth, distance_m_, heights.tx_m, heights.rx_m);
-    if (!(spherical_db > 0)) return 0;
-    const float nu = smoothEarthNu(task_.model.model, posts_, distance_m_, heights);
-    return fmaxf(spherical_db - propagation::bullingtonLossDb(nu, distance_m_), 0);
+    propagation::DeltaBullington<float> result;
+    result.effective = effectiveHeights(over, tx_m_, rx_m);
+    result.addEarth(earth, distance_m_,
+                    [&] { return smoothEarthNu(task_.model.model, posts_, distance_m_, result.effective); });
+    return result.loss_db;
   }
 
   const DiffractionTask& task_;
@@ -458,16 +420,12 @@ EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& g
   const FastInverse path = grid.coordinatesOf(task.station, column_index, segment);
   const float ground_msl_m =
       grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(task.station, task.ground, path);
-  const propagation::AirColumn air(task.air, static_cast<float>(path.distance_m));
+  const PathEnds ends(task.air, task.terminal, static_cast<float>(path.distance_m), ground_msl_m);
   const auto heightOf = [&](int layer) {
     return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[smaller(layer, end - 1)])));
   };
-  const auto addOthers = [&](int layer, float loss_db) {
-    if (task.terminal.isSet())
-      loss_db = task.terminal.withLossDb(loss_db, static_cast<float>(path.distance_m),
-                                         heightOf(layer) - ground_msl_m);
-    if (!task.air.isClear()) loss_db += air.lossDb(heightOf(layer));
-    set(layer, loss_db);
+  const auto setWithEnds = [&](int layer, float loss_db) {
+    set(layer, ends.areFree() ? loss_db : ends.added(loss_db, heightOf(layer)));
   };
   if (path.distance_m > 0) {  // not at the emitter itself
     ColumnPosts posts(task.station, task.ground, path, task.at_crossings);
@@ -499,7 +457,7 @@ EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& g
       }
       EMSCAPE_UNROLL_BY(1)
       for (int j = 0; j < kReceivers && k + j < end; ++j) {
-        addOthers(k + j, receivers.isLossy(rx_m[j]) ? receivers.lossDb(rx_m[j], most[j]) : 0);
+        setWithEnds(k + j, receivers.isLossy(rx_m[j]) ? receivers.lossDb(rx_m[j], most[j]) : 0);
       }
       k += kReceivers;
       setReceivers();
@@ -509,12 +467,12 @@ EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& g
       return false;
     }
   }
-  if (task.air.isClear() && !task.terminal.isSet()) {
+  if (ends.areFree()) {
     const ExcessStore to = task.out.excess;
     std::size_t voxel = static_cast<std::size_t>(k) * grid.column_count + column_index;
     for (; k < end; ++k, voxel += grid.column_count) to.set(voxel, 0);
   }
-  for (; k < end; ++k) addOthers(k, 0);
+  for (; k < end; ++k) setWithEnds(k, 0);
   return true;
 }
 

@@ -73,6 +73,28 @@ ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terra
 
 /// Heights (m above mean sea level) of a column's points at some t. By vector instructions.
 void heightsMslCpu(const GridColumn& column, const float* t_m, int count, float* height_msl_m);
+
+/// The losses of the air on a path and of the clutter at its ends, which are added to a model's excess.
+struct PathEnds {
+  const AirLoss& air;
+  const propagation::TerminalClutter& terminal;
+  propagation::AirColumn above;
+  float range_m, ground_msl_m;  ///< of the far end
+
+  EMSCAPE_HD PathEnds(const AirLoss& of_air, const propagation::TerminalClutter& of_ends, float at_m,
+                      float ground_m)
+      : air(of_air), terminal(of_ends), above(of_air, at_m), range_m(at_m), ground_msl_m(ground_m) {}
+
+  EMSCAPE_HD bool areFree() const { return air.isClear() && !terminal.isSet(); }
+  EMSCAPE_HD float withTerminalDb(float excess_db, float height_msl_m) const {
+    return terminal.isSet() ? terminal.withLossDb(excess_db, range_m, height_msl_m - ground_msl_m)
+                            : excess_db;
+  }
+  EMSCAPE_HD float added(float excess_db, float height_msl_m) const {
+    const float with_db = withTerminalDb(excess_db, height_msl_m);
+    return air.isClear() ? with_db : with_db + above.lossDb(height_msl_m);
+  }
+};
 /// Adds the atmospheric attenuation at these heights. By vector instructions.
 void addAirCpu(const AirLoss& air, float range_m, const GridColumn& column, const float* t_m, int count,
                float* excess_db);
@@ -137,39 +159,29 @@ struct ExcessTask {
     return height_msl_m;
   }
 
-  /// Adds the atmospheric attenuation at some heights of a segment.
-  EMSCAPE_HD void addAir(std::size_t c, int segment, const ExcessColumn& part, int begin, int end,
-                         float* excess_db) const {
-    if (air.isClear()) return;
-    const auto range_m = static_cast<float>(part.range_m);
-    const float* const t_m = grid.t_m + grid.firstLayer(segment);
-#ifdef __CUDA_ARCH__
-    const propagation::AirColumn above(air, range_m);
-    for (int k = begin; k < end; ++k) {
-      excess_db[k] +=
-          above.lossDb(static_cast<float>(heightMsl_m(grid.columns[c], static_cast<double>(t_m[k]))));
-    }
-#else
-    addAirCpu(air, range_m, grid.columns[c], t_m + begin, end - begin, excess_db + begin);
-#endif
-  }
-
-  /// Adds the loss by clutter at the ends of the paths to some heights of a segment.
-  EMSCAPE_HD void addTerminal(std::size_t c, int segment, const ExcessColumn& part, int begin, int end,
-                              float* excess_db) const {
-    if (!terminal.isSet()) return;
+  /// Adds the other losses (PathEnds) at some heights of a segment.
+  EMSCAPE_HD void addEnds(std::size_t c, int segment, const ExcessColumn& part, int begin, int end,
+                          float* excess_db) const {
     float ground_msl_m = part.ground_msl_m;
-    if constexpr (!Model::kNeedsTerrain) {
+    if (!Model::kNeedsTerrain && terminal.isSet()) {
       ground_msl_m = grid.ground_msl_m != nullptr
                          ? grid.ground_msl_m[c]
                          : groundAt(station, ground, grid.coordinatesOf(station, c, segment));
     }
+    const PathEnds ends(air, terminal, static_cast<float>(part.range_m), ground_msl_m);
+    if (ends.areFree()) return;
     const float* const t_m = grid.t_m + grid.firstLayer(segment);
-    for (int k = begin; k < end; ++k) {
-      const auto height_msl_m = static_cast<float>(heightMsl_m(grid.columns[c], static_cast<double>(t_m[k])));
-      excess_db[k] =
-          terminal.withLossDb(excess_db[k], static_cast<float>(part.range_m), height_msl_m - ground_msl_m);
-    }
+    const auto heightOf = [&](int k) {
+      return static_cast<float>(heightMsl_m(grid.columns[c], static_cast<double>(t_m[k])));
+    };
+#ifdef __CUDA_ARCH__
+    for (int k = begin; k < end; ++k) excess_db[k] = ends.added(excess_db[k], heightOf(k));
+#else
+    for (int k = begin; terminal.isSet() && k < end; ++k)
+      excess_db[k] = ends.withTerminalDb(excess_db[k], heightOf(k));
+    if (!air.isClear())
+      addAirCpu(air, ends.range_m, grid.columns[c], t_m + begin, end - begin, excess_db + begin);
+#endif
   }
 
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.
@@ -202,8 +214,7 @@ struct ExcessTask {
       } else {
         warnings |= model(part, scratch, excess_db);
       }
-      addTerminal(c, segment, part, 0, part.count, excess_db);
-      addAir(c, segment, part, 0, part.count, excess_db);
+      addEnds(c, segment, part, 0, part.count, excess_db);
     }
     return warnings;
   }

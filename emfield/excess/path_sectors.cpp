@@ -53,6 +53,14 @@ PathSectors::Azimuth PathSectors::azimuthAt(int sector, double part) const {
   }
 }
 
+double PathSectors::farthest_m(int sector) const {
+  double farthest_m = 0;
+  for (const SectorPath* to = begin(sector); to < end(sector); ++to) {
+    farthest_m = std::max(farthest_m, to->distance_m);
+  }
+  return farthest_m;
+}
+
 double PathSectors::halfWidth_rad(int sector) const {
   constexpr double kRounding = 1e-9;
   const Azimuth at = middle(sector);

@@ -33,6 +33,8 @@ class PathSectors {
   int count() const { return 4 * per_quadrant_; }
   const SectorPath* begin(int sector) const { return paths_.data() + first_[sector]; }
   const SectorPath* end(int sector) const { return paths_.data() + first_[sector + 1]; }
+  /// The largest distance in a sector; 0 without paths.
+  double farthest_m(int sector) const;
 
   struct Azimuth {
     double sine, cosine;

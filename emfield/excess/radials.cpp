@@ -189,7 +189,8 @@ RadialInputs radialInputs(const Station& station, const GridColumns& columns,
   };
   radials.ground = [=](double azimuth_rad, double length_m, double step_m, int count, float* ground_msl_m) {
     const std::vector<double> ranges_m = rangesOf(count, step_m);
-    readPostsCpu(station, groundPosts(terrain, ranges_m), pathOf(azimuth_rad, length_m), count, ground_msl_m);
+    readPostsCpu(station, groundPosts(terrain, ranges_m), pathOf(azimuth_rad, length_m), 0, count,
+                 ground_msl_m);
   };
   if (terrain->view().hasCover()) {
     radials.cover = [=](double azimuth_rad, double length_m, double step_m, int count,

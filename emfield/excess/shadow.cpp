@@ -20,7 +20,7 @@ void findShadowEdgesCpu(const Station& station, const GroundPosts& ground, const
   parallelFor(static_cast<int>(grid.column_count), 64, [&](int begin, int end) {
     std::vector<float> heights_m(terms.size());
     const auto slopeTo = [&](const FastInverse& path, int count) {
-      readPostsCpu(station, ground, path, count, heights_m.data());
+      readPostsCpu(station, ground, path, 0, count, heights_m.data());
       return grazingSlopeCpu(task.geometry(), heights_m.data() + 1, terms.data() + 1, count - 1);
     };
     for (int c = begin; c < end; ++c) {

@@ -123,8 +123,8 @@ class SectorShadows {
     if (isDecided(range)) return;
     const int first = std::max(first_block * SectorPosts::kBlock, 1);
     const int end = std::min((last_block + 1) * SectorPosts::kBlock, before + 1);
-    readPostsBetweenCpu(task_.station, task_.ground, grid_.coordinatesOf(task_.station, column, 0), first,
-                        end, heights_m_.data());
+    readPostsCpu(task_.station, task_.ground, grid_.coordinatesOf(task_.station, column, 0), first, end,
+                 heights_m_.data());
     edges_m_[column] = edgeOf(
         grazingSlopeCpu(task_.geometry(), heights_m_.data() + first, task_.terms + first, end - first));
   }
@@ -183,10 +183,7 @@ std::vector<char> findSurfaceShadows(const ShadowTask& task, const ExcessGrid& g
     SectorShadows shadows(task, grid, obstacles, is_left, edges_m);
     for (int sector = begin; sector < end; ++sector) {
       checkpoint();
-      double farthest_m = 0;
-      for (const SectorPath* to = sectors.begin(sector); to < sectors.end(sector); ++to) {
-        farthest_m = std::max(farthest_m, to->distance_m);
-      }
+      const double farthest_m = sectors.farthest_m(sector);
       if (farthest_m == 0) continue;
       const double half_width_rad = sectors.halfWidth_rad(sector);
       terrain.read(sectors.middle(sector), half_width_rad, task.ground.lastBefore(farthest_m) + 1);

@@ -9,17 +9,13 @@
 #include "emfield/ground/chord_crossings.h"
 #include "emfield/ground/ground_posts.h"
 #include "emscape/base/host_device.h"
+#include "propagation/diffraction/smooth_earth.h"
 
 namespace emscape::emfield {
 
 /// A post between the emitter and the receivers.
 struct PathPost {
   float range_m, height_msl_m;
-};
-
-/// The nearest posts on either side of a range; infinite: there is none.
-struct PostsAround {
-  float before_m, after_m;
 };
 
 /// The posts of a path with posts at crossings: see chord_crossings.h. Regular posts elsewhere.
@@ -104,8 +100,8 @@ class ColumnPosts {
   }
 
   /// After each().
-  EMSCAPE_HD PostsAround around(float range_m) {
-    PostsAround found{-HUGE_VALF, HUGE_VALF};
+  EMSCAPE_HD propagation::PostsAround<float> around(float range_m) {
+    propagation::PostsAround<float> found;
     const auto add = [&](double at_m) {
       const float here_m = fminf(static_cast<float>(at_m), farthest_m());
       if (here_m < range_m) {

@@ -174,13 +174,8 @@ void insert(const double* range_m, const float* height_msl_m, int count, int oth
 
 }  // namespace
 
-void readPostsCpu(const Station& station, const GroundPosts& ground, const FastInverse& path, int count,
-                  float* height_msl_m) {
-  readPostsBetweenCpu(station, ground, path, 0, count, height_msl_m);
-}
-
-void readPostsBetweenCpu(const Station& station, const GroundPosts& ground, const FastInverse& path,
-                         int first, int count, float* height_msl_m) {
+void readPostsCpu(const Station& station, const GroundPosts& ground, const FastInverse& path, int first,
+                  int count, float* height_msl_m) {
   if (ground.is_smooth) {
     std::fill(height_msl_m + first, height_msl_m + count, 0.0f);
     return;
@@ -205,7 +200,7 @@ int readProfileCpu(const Station& station, const GroundPosts& ground, const Fast
   constexpr int kMaxNear = 128;  // of posts at a tenth of the range from 2 m to 3 spacings
   const int regular = ground.lastBefore(path.distance_m) + 1;
   if (ground.is_smooth || !at_crossings) {
-    readPostsCpu(station, ground, path, regular, height_msl_m);
+    readPostsCpu(station, ground, path, 0, regular, height_msl_m);
     std::copy_n(ground.ranges_m, regular, range_m);
     return regular;
   }

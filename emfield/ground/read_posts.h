@@ -6,12 +6,9 @@
 
 namespace emscape::emfield {
 
-/// Heights of the first `count` regular posts toward a point.
-void readPostsCpu(const Station& station, const GroundPosts& ground, const FastInverse& path, int count,
-                  float* height_msl_m);
-/// The same of regular posts first..count - 1.
-void readPostsBetweenCpu(const Station& station, const GroundPosts& ground, const FastInverse& path,
-                         int first, int count, float* height_msl_m);
+/// Heights of the regular posts first..count - 1 toward a point.
+void readPostsCpu(const Station& station, const GroundPosts& ground, const FastInverse& path, int first,
+                  int count, float* height_msl_m);
 /// Reads the posts of a profile that are nearer than a point.
 /// @param at_crossings  false: regular posts; true: see chord_crossings.h
 /// @param range_m, height_msl_m  maxPosts() elements each

@@ -26,31 +26,25 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(DiffractionModel<Real> earth,
                                                  const ClearAirColumn<Real>& column,
                                                  const ClearAirPath<Real>& path, Real surface_nu) {
   const Real d = column.distance_m;
+  const ClearAirPosts<Real>& posts = column.posts;
   earth.earth.sea_fraction = Real(column.zones.sea_fraction);
   DeltaBullington<Real> result;
   result.effective = path.diffraction_heights;
   result.terrain_db = bullingtonLossDb(surface_nu, d);
-  result.spherical_db =
-      sphericalEarthLossDb(earth.earth, d, path.diffraction_heights.tx_m, path.diffraction_heights.rx_m);
   result.loss_db = result.terrain_db;
-  if (!(result.spherical_db > 0)) return result;
-  const ClearAirPosts<Real>& posts = column.posts;
-  const int last = posts.count() - 2;
-  const auto rangeOf = [&posts](int i) { return posts.range_m(i); };
-  const auto lastBefore = [&](Real range_m) {
-    int first = 1, end = last + 1;  // the answer is in first..end - 1
-    while (end - first > 1) {
-      const int middle = (first + end) / 2;
-      (rangeOf(middle) < range_m ? first : end) = middle;
+  const auto around = [&posts](Real range_m) {
+    const int end = posts.count() - 1;
+    int before = 0, after = end;
+    while (after - before > 1) {
+      const int middle = (before + after) / 2;
+      (posts.range_m(middle) < range_m ? before : after) = middle;
     }
-    return first;
+    PostsAround<Real> found;
+    if (before > 0) found.before_m = posts.range_m(before);
+    if (after < end) found.after_m = posts.range_m(after);
+    return found;
   };
-  const EffectiveHeights<Real>& heights = result.effective;
-  int clear = last < 1 ? 1 : lastBefore(d * heights.tx_m / (heights.tx_m + heights.rx_m));
-  const Real nu = smoothEarthNu(earth, rangeOf, lastBefore, last, d, heights, clear);
-  result.smooth_db = bullingtonLossDb(nu, d);
-  const Real correction_db = result.spherical_db - result.smooth_db;
-  result.loss_db += correction_db > 0 ? correction_db : Real(0);
+  result.addEarth(earth.earth, d, [&] { return smoothEarthNu(earth, d, result.effective, around); });
   return result;
 }
 

@@ -123,6 +123,13 @@ struct TerrainTrend {
   Real tx_ground_msl_m, rx_ground_msl_m;
 };
 
+/// That of a path without an obstacle above the line of sight, over heights that are relative to the first
+/// post.
+template <class Real>
+EMSCAPE_HD TerrainTrend<Real> clearTrend(Real start_m, Real end_m, Real rx_ground_m) {
+  return {start_m, end_m, -Real(HUGE_VAL), -Real(HUGE_VAL), -Real(HUGE_VAL), 0, rx_ground_m};
+}
+
 /// Heights of the antennas above the smooth surface (m).
 template <class Real>
 struct EffectiveHeights {
@@ -195,6 +202,17 @@ struct DeltaBullington {
   Real smooth_db = 0;                  ///< L_bulls; not computed and 0 where L_dsph is 0
   Real spherical_db = 0;               ///< L_dsph
   EffectiveHeights<Real> effective{};  ///< above the smooth surface
+
+  /// Adds the correction for the smooth earth, from `effective`.
+  /// @param nuOf  () -> nu of Bullington's edge over it
+  template <class NuOf>
+  EMSCAPE_HD void addEarth(const SphericalEarth<Real>& earth, Real distance_m, const NuOf& nuOf) {
+    spherical_db = sphericalEarthLossDb(earth, distance_m, effective.tx_m, effective.rx_m);
+    if (!(spherical_db > 0)) return;
+    smooth_db = bullingtonLossDb(nuOf(), distance_m);
+    const Real correction_db = spherical_db - smooth_db;
+    loss_db += correction_db > 0 ? correction_db : Real(0);
+  }
 };
 
 /// Bullington's nu over heights of obstacles: terrain, or a smooth earth if all are 0.
@@ -240,9 +258,7 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
   const Real d = Real(distance_m);
   const Real base = Real(profile.height_msl_m[0]);
   // Heights are relative to the first post, for precision in float.
-  TerrainTrend<Real> trend;
-  trend.tx_ground_msl_m = 0;
-  trend.rx_ground_msl_m = Real(profile.height_msl_m[last]) - base;
+  TerrainTrend<Real> trend = clearTrend(Real(0), Real(0), Real(profile.height_msl_m[last]) - base);
   const Real tx = model.raised_m(tx_msl_m - base, 0);
   const Real rx = model.raised_m(rx_msl_m - base, trend.rx_ground_msl_m);
   const auto heightOf = [&](int i) { return Real(profile.height_msl_m[i]) - base; };
@@ -253,8 +269,6 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
   }
 
   TerrainSums sums;
-  const Real infinity = Real(HUGE_VAL);
-  trend.highest_m = trend.tx_angle = trend.rx_angle = -infinity;
   const Real slope = (rx - tx) / d;
   for (int i = 1; i <= last; ++i) {
     sums.add(profile, i);
@@ -282,16 +296,11 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
         [&](int i) { return profile.height_msl_m[i]; });
     earth.sea_fraction = Real(sea_m / distance_m);
   }
-  result.spherical_db = sphericalEarthLossDb(earth, d, result.effective.tx_m, result.effective.rx_m);
   result.loss_db = result.terrain_db;
-  if (result.spherical_db > 0) {
-    const auto seaLevel = [](int) { return Real(0); };
-    result.smooth_db = bullingtonLossDb(bullingtonNu(model, profile.range_m, profile.count,
-                                                     result.effective.tx_m, result.effective.rx_m, seaLevel),
-                                        d);
-    const Real correction_db = result.spherical_db - result.smooth_db;
-    result.loss_db += correction_db > 0 ? correction_db : Real(0);
-  }
+  result.addEarth(earth, d, [&] {
+    return bullingtonNu(model, profile.range_m, profile.count, result.effective.tx_m, result.effective.rx_m,
+                        [](int) { return Real(0); });
+  });
   return result;
 }
 

@@ -353,11 +353,8 @@ class LaneColumn {
       v2 += area * (before + range_m[i] + beyond);
     }
     const TerrainSums sums{v1, v2};
-    trend_.start_msl_m = static_cast<float>(sums.start_m(range_m[last]));
-    trend_.end_msl_m = static_cast<float>(sums.end_m(range_m[last]));
-    trend_.tx_ground_msl_m = 0;
-    trend_.rx_ground_msl_m = ground_m_;
-    trend_.highest_m = -HUGE_VALF;
+    trend_ = clearTrend(static_cast<float>(sums.start_m(range_m[last])),
+                        static_cast<float>(sums.end_m(range_m[last])), ground_m_);
     if (model_.sea_by_height) {
       const double sea_m = lengthOverSea_m(
           count_ + 2, [=](int i) { return range_m[i]; }, [=](int i) { return height_msl_m[i]; });
@@ -369,13 +366,10 @@ class LaneColumn {
   /// sight only lower the smooth surface and so increase the heights of both antennas above it, which are at
   /// least those above their ground.
   bool isClearOfEarth(float rx_m) {
-    const auto isClear = [this](float tx, float rx) {
-      return isClearThroughout(model_.earth, distance_m_, sightLine(model_.earth, distance_m_, tx, rx));
-    };
-    if (isClear(tx_m_, rx_m - ground_m_)) return true;
+    if (isClearThroughout(model_.earth, distance_m_, tx_m_, rx_m - ground_m_)) return true;
     findTrend();
     const EffectiveHeights<float> least = effectiveHeights(trend_, tx_m_, rx_m);
-    return isClear(least.tx_m, least.rx_m);
+    return isClearThroughout(model_.earth, distance_m_, least.tx_m, least.rx_m);
   }
 
   /// Smooth-earth correction (dB): the spherical earth's loss minus Bullington's, at least 0.
@@ -386,18 +380,19 @@ class LaneColumn {
     trend.highest_m = highest_m;
     trend.tx_angle = plain_tx_slope_ - slopeTo(rx_m);
     trend.rx_angle = plain_rx_slope;
-    const EffectiveHeights<float> heights = effectiveHeights(trend, tx_m_, rx_m);
-    const float spherical_db = sphericalEarthLossDb(model_.earth, distance_m_, heights.tx_m, heights.rx_m);
-    if (!(spherical_db > 0)) return 0;
-    if (count_ < 1) return spherical_db;
-    const auto lastBefore = [this](float range_m) {
-      const int nearer = static_cast<int>(std::lower_bound(range_m_, range_m_ + count_, range_m) - range_m_);
-      return std::max(nearer, 1);
+    const auto around = [this](float range_m) {
+      const float* const first = range_m_;
+      const float *const end = first + count_, *const after = std::lower_bound(first, end, range_m);
+      PostsAround<float> found;
+      if (after > first) found.before_m = after[-1];
+      if (after < end) found.after_m = *after;
+      return found;
     };
-    int clear = lastBefore(distance_m_ * heights.tx_m / (heights.tx_m + heights.rx_m));
-    const float nu = smoothEarthNu(
-        model_, [this](int i) { return range_m_[i - 1]; }, lastBefore, count_, distance_m_, heights, clear);
-    return std::max(spherical_db - bullingtonLossDb(nu, distance_m_), 0.0f);
+    DeltaBullington<float> earth;
+    earth.effective = effectiveHeights(trend, tx_m_, rx_m);
+    earth.addEarth(model_.earth, distance_m_,
+                   [&] { return smoothEarthNu(model_, distance_m_, earth.effective, around); });
+    return earth.loss_db;
   }
 
   DiffractionModel<float> model_;

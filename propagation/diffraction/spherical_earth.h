@@ -166,6 +166,11 @@ EMSCAPE_HD bool isClearThroughout(const SphericalEarth<Real>& earth, Real distan
   const Real most_m = kRequiredClearance<Real> * std::sqrt(earth.wavelength_m * distance_m) / 2;
   return line.sum_m * (line.middle_m - most_m) > line.bulge_m * line.middle_m;
 }
+template <class Real>
+EMSCAPE_HD bool isClearThroughout(const SphericalEarth<Real>& earth, Real distance_m, Real height1_m,
+                                  Real height2_m) {
+  return isClearThroughout(earth, distance_m, sightLine(earth, distance_m, height1_m, height2_m));
+}
 
 /// Loss (dB) of a smooth earth, >= 0.
 /// @param distance_m            > 0

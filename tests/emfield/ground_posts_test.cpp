@@ -89,7 +89,7 @@ TEST(GroundPosts, VectorLoopsReadHeightsOfTerrain) {
     const int count = ground.lastBefore(path.distance_m) + 1;
     std::vector<float> plain(static_cast<std::size_t>(count)), vectors(plain);
     visitPosts(station, ground, path, count, [&](int i, float here) { plain[std::size_t(i)] = here; });
-    readPostsCpu(station, ground, path, count, vectors.data());
+    readPostsCpu(station, ground, path, 0, count, vectors.data());
     propagation::GrazingSlope<float> slope;
     for (int i = 0; i < count; ++i) {
       const auto at = static_cast<std::size_t>(i);
