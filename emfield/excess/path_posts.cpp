@@ -81,7 +81,8 @@ PathPosts::PathPosts(const SectorObstacles& obstacles, const SectorTerrain& terr
   longest_chord_beside_m_ = sine_of_latitude < kOf75Degrees ? 0.02f : 0.1f;  // see terrain_walk.h
   const auto blocks = static_cast<std::size_t>(obstacles.posts.blocks());
   for (auto* const posts : {&range_m_, &height_m_}) posts->resize(blocks * kOfBlock);
-  for (auto* const of_blocks : {&read_for_, &raised_for_, &columns_}) of_blocks->resize(blocks);
+  for (auto* const of_blocks : {&read_for_, &raised_for_, &clutter_read_for_, &columns_})
+    of_blocks->resize(blocks);
   doubtful_.resize(blocks);
 }
 
@@ -92,6 +93,10 @@ void PathPosts::begin(const PathToRead& path) {
   is_left_ = false;
   chord_m_ = path.distance_m / (std::floor(path.distance_m / longest_chord_m_) + 1);
   const float part = chord_m_ / longest_chord_m_;  // the deviation grows by the cube
+  clutter_posts_.clear();
+  const GroundPosts& ground = obstacles_.ground;
+  mirrored_m_ = static_cast<float>(
+      ground.has_clutter ? path.exact_distance_m - ground.ranges_m[ground.clutter_end] : HUGE_VAL);
   beside_m_ = kRounding_m + longest_chord_beside_m_ * part * part * part;
 }
 
@@ -165,15 +170,13 @@ EMSCAPE_SIMD_CLONES void PathPosts::raise(int block) {
                     range_m(block), height_m_.data() + block * kOfBlock);
 }
 
-EMSCAPE_SIMD_CLONES const std::vector<PathPosts::ClutterPost>& PathPosts::clutterPosts() {
-  if (clutter_read_for_ == number_) return clutter_posts_;
-  clutter_read_for_ = number_;
-  clutter_posts_.clear();
+EMSCAPE_SIMD_CLONES void PathPosts::readClutterPosts(int block) {
   const GroundPosts& ground = obstacles_.ground;
   const float* const last_m = obstacles_.posts.last_m();
+  const Part part = partIn(block);
   float range_m[kOfBlock], height_m[kOfBlock];
-  int block = 0, count = 0;
-  const auto raiseAll = [&] {  // those of one block
+  int count = 0;
+  const auto raiseAll = [&] {
     if (count == 0) return;
     std::fill_n(range_m, kCrossings, range_m[kCrossings]);
     std::fill(range_m + kCrossings + count, range_m + kOfBlock, range_m[kCrossings]);
@@ -183,24 +186,21 @@ EMSCAPE_SIMD_CLONES const std::vector<PathPosts::ClutterPost>& PathPosts::clutte
                                             terrain_.base_msl_m(), range_m, height_m);
     for (int i = kCrossings; i < kCrossings + count; ++i) {
       is_left_ = is_left_ || std::isnan(height_m[i]);
-      clutter_posts_.push_back({range_m[i], height_m[i], (doubtful >> i & 1) != 0});
+      clutter_posts_.push_back({block, range_m[i], height_m[i], (doubtful >> i & 1) != 0});
     }
     count = 0;
   };
   for (int n = 0; n < ground.clutterPosts(); ++n) {
     const double at_m = ground.clutterPost_m(n, path_->exact_distance_m);
-    if (!isClutterAt(at_m, path_->exact_distance_m)) continue;
     const auto here_m = static_cast<float>(at_m);
-    int of_post = std::min(ground.lastBefore(at_m) / kBlock, path_->blocks - 1);
-    if (of_post + 1 < path_->blocks && here_m > last_m[of_post]) ++of_post;
-    if (of_post != block || count == kBlock) raiseAll();
-    block = of_post;
-    const Part part = partIn(block);
+    const bool is_before = block > 0 && !(here_m > last_m[block - 1]);
+    const bool is_beyond = block + 1 < path_->blocks && here_m > last_m[block];
+    if (is_before || is_beyond || !isClutterAt(at_m, path_->exact_distance_m)) continue;
+    if (count == kBlock) raiseAll();
     range_m[kCrossings + count] = here_m;
     height_m[kCrossings + count++] = heightAt(part, part.at(here_m));
   }
   raiseAll();
-  return clutter_posts_;
 }
 
 }  // namespace emscape::emfield

@@ -37,7 +37,7 @@ class PathPosts {
 
   /// Reads a block. Unused places are below everything.
   void read(int block);
-  /// Adds the clutter of a block that was read. False: it was added before.
+  /// Whether clutter was added to a block that was read; adds it.
   bool isRaised(int block) const { return raised_for_[block] == number_; }
   void raise(int block);
   /// Of a block that was read. Heights are relative to the base.
@@ -50,10 +50,24 @@ class PathPosts {
 
   /// A post for clutter (GroundPosts).
   struct ClutterPost {
+    int block;
     float range_m, height_m;
     bool is_doubtful;  ///< the height is an upper bound
   };
-  const std::vector<ClutterPost>& clutterPosts();
+  /// Calls visit(ClutterPost) for those of a block.
+  template <class Visit>
+  void eachClutterPost(int block, const Visit& visit) {
+    const bool is_near =
+        block == 0 || static_cast<double>(obstacles_.posts.first_m()[block]) <= kClutterFree_m;
+    if (!is_near && obstacles_.posts.last_m()[block] < mirrored_m_) return;
+    if (clutter_read_for_[block] != number_) {
+      clutter_read_for_[block] = number_;
+      readClutterPosts(block);
+    }
+    for (const ClutterPost& post : clutter_posts_) {
+      if (post.block == block) visit(post);
+    }
+  }
 
   /// The path has a void, or a block of too many posts.
   bool isLeft() const { return is_left_; }
@@ -71,6 +85,7 @@ class PathPosts {
   };
   Part partIn(int block) const;
   RasterLine lineIn(int block) const;
+  void readClutterPosts(int block);
   float heightAt(const Part& part, float of_chord) const {
     return bilinearHeight(part.chord.corner_msl_m, terrain_.rowPosts(), part.column.at(of_chord),
                           part.row.at(of_chord)) -
@@ -83,17 +98,17 @@ class PathPosts {
   const BlockCover* cover_;
   float longest_chord_m_, longest_chord_beside_m_;
   const PathToRead* path_ = nullptr;
-  int number_ = 0;      ///< of the path
-  float chord_m_ = 0;   ///< length of the chords of its profile
-  float beside_m_ = 0;  ///< largest distance from its profile's path
+  int number_ = 0;        ///< of the path
+  float chord_m_ = 0;     ///< length of the chords of its profile
+  float mirrored_m_ = 0;  ///< first of the posts for clutter before the receivers
+  float beside_m_ = 0;    ///< largest distance from its profile's path
   bool is_left_ = false;
   // Of the blocks that were read:
   std::vector<float> range_m_, height_m_;
-  std::vector<int> read_for_, raised_for_;  ///< numbers of paths
-  std::vector<int> columns_;                ///< number of the posts on columns
+  std::vector<int> read_for_, raised_for_, clutter_read_for_;  ///< numbers of paths
+  std::vector<int> columns_;                                   ///< number of the posts on columns
   std::vector<unsigned> doubtful_;
   std::vector<ClutterPost> clutter_posts_;
-  int clutter_read_for_ = 0;
 };
 
 }  // namespace emscape::emfield

@@ -26,12 +26,6 @@ class PathSearch {
   /// @param most  start of the search; receives the maximum
   template <class BoundOf, class ValueOf>
   void operator()(const BoundOf& boundOf, const ValueOf& valueOf, Maximum& most) const {
-    if (posts_.areRaised()) {  // they often decide
-      for (const PathPosts::ClutterPost& post : posts_.clutterPosts()) {
-        const float value = valueOf(post.range_m, post.height_m);
-        if (value > most.value) most = {value, most.block, post.is_doubtful};
-      }
-    }
     const int count = posts_.path().blocks, guess = std::min(most.block, count - 1);
     const ObstacleBounds& blocks = bounds_.blocks();
     const float last_m = std::min(obstacles_.blocks.last_m[guess], posts_.path().last_m);
@@ -49,39 +43,18 @@ class PathSearch {
     if (most.is_bound) posts_.leave();
   }
 
- private:
-  /// Visits those of kGroup blocks or groups whose bound exceeds the maximum, the farthest first.
-  /// @param count  of all blocks or groups
-  template <class BoundOf, class Visit>
-  void descend(int group, int count, const ObstacleBounds& bounds, const ObstacleRanges& ranges,
-               const BoundOf& boundOf, const Maximum& most, const Visit& visitOne) const {
-    constexpr int kGroup = SectorPosts::kGroup;
-    const int begin = group * kGroup;
-    const float *const lowered_m = bounds.lowered_m.data() + begin, *const tx_slope =
-                                                                        bounds.tx_slope.data() + begin;
-    const float *const first_m = ranges.first_m.data() + begin, *const last_m = ranges.last_m.data() + begin;
-    const float least = most.value, farthest_m = posts_.path().last_m;
-    float bound[kGroup];
-    unsigned exceeds = 0;  // bit i: the bound of i exceeds the maximum
-#pragma omp simd reduction(| : exceeds)
-    for (int i = 0; i < kGroup; ++i) {
-      bound[i] =
-          boundOf(lowered_m[i], tx_slope[i], first_m[i], last_m[i] < farthest_m ? last_m[i] : farthest_m);
-      exceeds |= (bound[i] > least ? 1u : 0u) << i;
-    }
-    if (count - begin < kGroup) exceeds &= (1u << (count - begin)) - 1;
-    while (exceeds != 0) {
-      const int i = 31 - __builtin_clz(exceeds);
-      exceeds &= ~(1u << i);
-      if (bound[i] > most.value) visitOne(begin + i);
-    }
-  }
-
+  /// The same among the posts of one block.
   template <class ValueOf>
   void visit(int block, const ValueOf& valueOf, Maximum& most) const {
     constexpr int kCrossings = PathPosts::kCrossings, kOfBlock = PathPosts::kOfBlock;
     constexpr float kRounding = 1e-5f;
     posts_.read(block);
+    if (posts_.areRaised()) {
+      posts_.eachClutterPost(block, [&](const PathPosts::ClutterPost& post) {
+        const float value = valueOf(post.range_m, post.height_m);
+        if (value > most.value) most = {value, block, post.is_doubtful};
+      });
+    }
     const float *const range_m = posts_.range_m(block), *const height_m = posts_.height_m(block);
     const auto largestOf = [&](int begin, int end, float raised_m) {
       float largest = -HUGE_VALF;
@@ -111,6 +84,34 @@ class PathSearch {
       is_bound = is_bound || valueOf(range_m[i], height_m[i]) >= largest - kRounding * std::fabs(largest);
     }
     most = {largest, block, is_bound};
+  }
+
+ private:
+  /// Visits those of kGroup blocks or groups whose bound exceeds the maximum, the farthest first.
+  /// @param count  of all blocks or groups
+  template <class BoundOf, class Visit>
+  void descend(int group, int count, const ObstacleBounds& bounds, const ObstacleRanges& ranges,
+               const BoundOf& boundOf, const Maximum& most, const Visit& visitOne) const {
+    constexpr int kGroup = SectorPosts::kGroup;
+    const int begin = group * kGroup;
+    const float *const lowered_m = bounds.lowered_m.data() + begin, *const tx_slope =
+                                                                        bounds.tx_slope.data() + begin;
+    const float *const first_m = ranges.first_m.data() + begin, *const last_m = ranges.last_m.data() + begin;
+    const float least = most.value, farthest_m = posts_.path().last_m;
+    float bound[kGroup];
+    unsigned exceeds = 0;  // bit i: the bound of i exceeds the maximum
+#pragma omp simd reduction(| : exceeds)
+    for (int i = 0; i < kGroup; ++i) {
+      bound[i] =
+          boundOf(lowered_m[i], tx_slope[i], first_m[i], last_m[i] < farthest_m ? last_m[i] : farthest_m);
+      exceeds |= (bound[i] > least ? 1u : 0u) << i;
+    }
+    if (count - begin < kGroup) exceeds &= (1u << (count - begin)) - 1;
+    while (exceeds != 0) {
+      const int i = 31 - __builtin_clz(exceeds);
+      exceeds &= ~(1u << i);
+      if (bound[i] > most.value) visitOne(begin + i);
+    }
   }
 
   const SectorObstacles& obstacles_;

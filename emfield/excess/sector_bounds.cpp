@@ -116,26 +116,21 @@ EMSCAPE_SIMD_CLONES void SectorBounds::setTrend() {
   }
 }
 
-// As for the lanes of propagation/diffraction/excess.cpp.
-EMSCAPE_SIMD_CLONES bool SectorBounds::isClearOfEarth(const SectorPath& to, int before, float rx_m) {
-  const propagation::SphericalEarth<float>& earth = obstacles_.model.earth;
-  const auto distance_m = static_cast<float>(to.distance_m);
-  const float ground_m = to.ground_msl_m - base_msl_m();
-  if (isClearThroughout(earth, distance_m, tx_m_, rx_m - ground_m)) return true;
+EMSCAPE_SIMD_CLONES propagation::TerrainTrend<float> SectorBounds::highestTrend(const SectorPath& to,
+                                                                                int before) {
   if (sums_.empty()) setTrend();
+  const float ground_m = to.ground_msl_m - base_msl_m();
   propagation::TerrainSums sums = sums_[before];
   const float before_m = terrain_.height_msl_m()[SectorPosts::inGroups(before)] - base_msl_m();
   sums.add(obstacles_.ground.ranges_m[before], static_cast<double>(before_m), to.distance_m,
            static_cast<double>(ground_m));
   // The weight of a height in either end of the line is at most twice that in the mean height. Clutter of one
   // height along two thirds of the path, where the weights are positive, raises it by 4/3 of it.
-  const float most_m = 2 * static_cast<float>(differences_m2_[before / kBlock]) / distance_m +
-                       obstacles_.highest_cover_m * (4.0f / 3);
-  const auto trend =
-      propagation::clearTrend(static_cast<float>(sums.start_m(to.distance_m)) + most_m,
-                              static_cast<float>(sums.end_m(to.distance_m)) + most_m, ground_m);
-  const auto least = effectiveHeights(trend, tx_m_, rx_m);
-  return isClearThroughout(earth, distance_m, least.tx_m, least.rx_m);
+  const float most_m =
+      2 * static_cast<float>(differences_m2_[before / kBlock]) / static_cast<float>(to.distance_m) +
+      obstacles_.highest_cover_m * (4.0f / 3);
+  return propagation::clearTrend(static_cast<float>(sums.start_m(to.distance_m)) + most_m,
+                                 static_cast<float>(sums.end_m(to.distance_m)) + most_m, ground_m);
 }
 
 }  // namespace emscape::emfield

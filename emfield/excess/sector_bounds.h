@@ -60,11 +60,10 @@ class SectorBounds {
   /// Largest tx_slope of a block and all before it.
   float highestTxSlope(int block) const { return highest_tx_slope_[block]; }
 
-  /// True if the smooth earth has no loss for a receiver at the end of a path and those above: by the ground
-  /// below the antennas, or else by the line fitted to the terrain in the middle of the sector.
+  /// The line fitted to the terrain of a path is nowhere above this one, from the middle of the sector; no
+  /// obstacle is known to be above the line of sight.
   /// @param before  last regular post before the receivers
-  /// @param rx_m    height of the receiver
-  bool isClearOfEarth(const SectorPath& to, int before, float rx_m);
+  propagation::TerrainTrend<float> highestTrend(const SectorPath& to, int before);
 
  private:
   void setTrend();

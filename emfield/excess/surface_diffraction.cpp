@@ -21,7 +21,7 @@ struct SectorMemory {
   std::vector<float> rx_m;  ///< heights of a path's receivers, as inputs of the model
   /// Per height: the blocks that determined the loss of the previous path.
   std::vector<int> rx_block, nu_block;
-  int tx_block = 0;
+  int tx_block = 0, highest_block = 0;
   /// Paths that were searched, and of their receivers, path by path: nu and distance of the edge, and the
   /// loss.
   std::vector<const SectorPath*> searched;
@@ -86,6 +86,78 @@ inline void findEdges(const DiffractionModel<float>& model, const SectorBounds& 
   }
 }
 
+/// Whether the smooth earth has no loss for the receivers of a path.
+struct EarthBelowPath {
+  const SectorObstacles& obstacles;
+  SectorBounds& bounds;
+  const SectorPath& to;
+  const PathToRead& path;
+  const PathSearch& search;
+
+  /// By the ground below the antennas, or by the line fitted to the terrain, which obstacles above the line
+  /// of sight lower (P.526-15 eq. (63) to (66)); all without the earth's bulge.
+  /// @param rx_m           heights, lowest first
+  /// @param highest_block  that held the highest obstacle of the previous path
+  bool isFreeOfLoss(const std::vector<float>& rx_m, int& highest_block) const {
+    const float tx_m = bounds.tx_m(), ground_m = to.ground_msl_m - bounds.base_msl_m();
+    if (isClear({tx_m, rx_m[0] - ground_m})) return true;
+    const TerrainTrend trend = bounds.highestTrend(to, path.before);
+    for (const float rx : rx_m) {
+      if (isClear(effectiveHeights(trend, tx_m, rx))) return true;  // and those above
+      if (!isLowered(trend, rx, highest_block)) return false;
+    }
+    return true;
+  }
+
+ private:
+  using TerrainTrend = propagation::TerrainTrend<float>;
+  using Heights = propagation::EffectiveHeights<float>;
+
+  bool isClear(const Heights& heights) const {
+    return isClearThroughout(obstacles.model.earth, path.distance_m, heights.tx_m, heights.rx_m);
+  }
+  bool isLowered(const TerrainTrend& trend, float rx_m, int& highest_block) const {
+    const float k = obstacles.model.half_curvature, d = path.distance_m, tx_m = bounds.tx_m();
+    const float slope = (rx_m - tx_m) / d;
+    const auto heightOf = [=](float range, float height) { return height - tx_m - slope * range; };
+    Maximum highest{0, std::min(highest_block, path.blocks - 1)};
+    search.visit(highest.block, heightOf, highest);
+    if (!highest.is_bound && isClearHoweverShared(trend, rx_m, highest.value)) return true;
+    search(
+        [=](float lowered, float, float first_m, float last_m) {
+          return lowered + k * last_m * last_m - tx_m - slope * (slope > 0 ? first_m : last_m);
+        },
+        heightOf, highest);
+    highest_block = highest.block;
+    if (!(highest.value > 0)) return false;
+    if (isClearHoweverShared(trend, rx_m, highest.value)) return true;
+    Maximum tx_slope{slope, highest.block}, rx_slope{-slope, highest.block};
+    search([=](float, float lowered_slope, float, float last_m) { return lowered_slope + k * last_m; },
+           [=](float range, float height) { return (height - tx_m) * (1 / range); }, tx_slope);
+    search(
+        [=](float lowered, float, float first_m, float last_m) {
+          const float above = lowered + k * last_m * last_m - rx_m;
+          return above / (d - (above > 0 ? last_m : first_m));
+        },
+        [=](float range, float height) { return (height - rx_m) * (1 / (d - range)); }, rx_slope);
+    TerrainTrend lowered = trend;
+    lowered.highest_m = highest.value;
+    lowered.tx_angle = tx_slope.value - slope;
+    lowered.rx_angle = rx_slope.value + slope;
+    return isClear(effectiveHeights(lowered, tx_m, rx_m));
+  }
+  /// True if an obstacle lowers the line enough however that is shared between its ends. What is left where
+  /// the line comes below both antennas' ground raises them together; by which of them more, the sum and the
+  /// product of their heights are least where one has all of it.
+  bool isClearHoweverShared(const TerrainTrend& trend, float rx_m, float highest_m) const {
+    const Heights least = effectiveHeights(trend, bounds.tx_m(), rx_m);
+    const float more_m = highest_m - std::max(trend.start_msl_m, 0.0f) -
+                         std::max(trend.end_msl_m - trend.rx_ground_msl_m, 0.0f);
+    return more_m > 0 && isClear({least.tx_m + more_m, least.rx_m}) &&
+           isClear({least.tx_m, least.rx_m + more_m});
+  }
+};
+
 /// The paths of one sector.
 struct SectorTask {
   const DiffractionTask& task;
@@ -146,8 +218,9 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const SectorObstac
       memory.rx_m[n] =
           obstacles.model.raised_m(here_m - bounds.base_msl_m(), to->ground_msl_m - bounds.base_msl_m());
     }
-    if (!bounds.isClearOfEarth(*to, path.before, memory.rx_m[0])) continue;
     posts.begin(path);
+    const EarthBelowPath earth{obstacles, bounds, *to, path, search};
+    if (!earth.isFreeOfLoss(memory.rx_m, memory.highest_block)) continue;
     const std::size_t first = memory.searched.size() * layers;
     findEdges(obstacles.model, bounds, path, search, grid.layers, memory, memory.nu.data() + first);
     if (posts.isLeft()) continue;

@@ -248,7 +248,8 @@ TEST_P(SurfaceField, ShadowsOfManyPositionsEqualThoseOfFew) {
   }
 }
 
-// Few positions are computed from their whole profiles, many by a search that reads parts of them.
+// Few positions are computed from their whole profiles, many by a search that reads parts of them. At low
+// frequencies the smooth earth below most of them has a loss, or has none because obstacles lower it.
 TEST_P(SurfaceField, ManyPositionsAroundAVoidEqualFew) {
   terrain_ = std::make_shared<MadeTerrain>(36.303, -84.246, 0.3, 0.04);
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
@@ -258,28 +259,32 @@ TEST_P(SurfaceField, ManyPositionsAroundAVoidEqualFew) {
   few->height = 100;
   few->positions.clear();
   for (std::size_t p = 0; p < many->positions.size(); p += 60) few->positions.push_back(many->positions[p]);
-  FieldOptions options;
-  options.backend = GetParam();
-  options.allow_missing_terrain = true;
-  options.surface = many;
-  const auto of_many = solve(scenario, terrain_, options);
-  options.surface = few;
-  const auto of_few = solve(scenario, terrain_, options);
-  int behind = 0;
-  for (std::size_t p = 0; p < few->positions.size(); ++p) {
-    ASSERT_EQ(of_many->first_valid_k[60 * p], of_few->first_valid_k[p]);
-    const auto [latitude_deg, longitude_deg] = few->positions[p];
-    if (of_few->first_valid_k[p] > 0) {
-      behind += std::isnan(terrain_->heightMsl_m(latitude_deg, longitude_deg)) ? 0 : 1;
-      continue;
+  for (const double frequency_hz : {3e9, 300e6, 50e6}) {
+    SCOPED_TRACE(frequency_hz);
+    scenario->emitters[0].frequency_hz = frequency_hz;
+    FieldOptions options;
+    options.backend = GetParam();
+    options.allow_missing_terrain = true;
+    options.surface = many;
+    const auto of_many = solve(scenario, terrain_, options);
+    options.surface = few;
+    const auto of_few = solve(scenario, terrain_, options);
+    int behind = 0;
+    for (std::size_t p = 0; p < few->positions.size(); ++p) {
+      ASSERT_EQ(of_many->first_valid_k[60 * p], of_few->first_valid_k[p]);
+      const auto [latitude_deg, longitude_deg] = few->positions[p];
+      if (of_few->first_valid_k[p] > 0) {
+        behind += std::isnan(terrain_->heightMsl_m(latitude_deg, longitude_deg)) ? 0 : 1;
+        continue;
+      }
+      for (std::size_t k = 0; k < 2; ++k) {
+        ASSERT_NEAR(of_many->values[k * many->positions.size() + 60 * p],
+                    of_few->values[k * few->positions.size() + p], 0.01);
+      }
     }
-    for (std::size_t k = 0; k < 2; ++k) {
-      ASSERT_NEAR(of_many->values[k * many->positions.size() + 60 * p],
-                  of_few->values[k * few->positions.size() + p], 0.01);
-    }
+    EXPECT_GT(behind, 5);
+    EXPECT_LT(behind, 200);
   }
-  EXPECT_GT(behind, 5);
-  EXPECT_LT(behind, 200);
 }
 
 TEST_P(SurfaceField, AboveSeaLevelIsMaskedBelowGround) {
