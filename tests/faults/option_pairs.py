@@ -95,7 +95,7 @@ def drawn(option, random_):
 
 
 def faults_of(done, folder):
-    errors = [line for line in done.stderr.splitlines() if line.startswith("emscape: error:")]
+    errors = [line for line in done.stderr.splitlines() if line.startswith(("emscape: error:", "emscape-view: error:"))]
     if done.returncode not in range(6):
         yield f"status {done.returncode}"
     if done.returncode in (1, 2, 3, 4) and len(errors) != 1 and not re.search(r"error:|: \"error\"", done.stdout):
