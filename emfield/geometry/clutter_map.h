@@ -167,14 +167,17 @@ struct ClutterMapTask {
       before[0] = here;
     }
   }
-  /// From sums weighted by the echo to means.
+  /// From sums of depths weighted by the echo to means of sines, seen from the middles of the cells.
   EMSCAPE_HD void normalize(ClutterCell* row) const {
     int first = 0;
     while (first < grid.ranges && !(row[first].echo > 0)) ++first;
     if (first == grid.ranges) return;
-    float sine = row[first].sine / row[first].echo;
+    const auto sineAt = [&](int n) {
+      return row[n].sine / (row[n].echo * grid.step_m * (static_cast<float>(n) + 0.5f));
+    };
+    float sine = sineAt(first);
     for (int n = 0; n < grid.ranges; ++n) {
-      if (row[n].echo > 0) sine = row[n].sine / row[n].echo;
+      if (row[n].echo > 0) sine = sineAt(n);
       row[n].sine = sine > -1 ? sine : -1.0f;
     }
   }
@@ -214,8 +217,7 @@ struct ClutterMapTask {
                           std::pow(10.0, -0.2 * static_cast<double>(air_db_per_m) * range_m) *
                           static_cast<double>(grid.part_of_step);
       row[n].echo += static_cast<float>(echo);
-      // At the middle of the step; its mean is taken at the end.
-      row[n].sine -= static_cast<float>(echo * depth_m * per_m / (n + 0.5));
+      row[n].sine -= static_cast<float>(echo * depth_m);  // becomes a mean sine at the end
     }
   }
 };
