@@ -32,7 +32,9 @@ int azimuthsOf(const scenario::Emitter& radar) {
 ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emitter& radar,
                         const Station& station, const propagation::PathExtent* extent) {
   const double reach = reach_m(scenario.region, station), cell_m = radar.clutter->range_cell_m;
-  const double step_m = std::max(cell_m, reach / kMaxRanges);
+  int steps = ClutterGrid::kMaxSteps;
+  while (steps > 1 && cell_m / steps < reach / kMaxRanges) steps -= 2;
+  const double step_m = std::max(cell_m / steps, reach / kMaxRanges);
   double farthest_m = reach;
   if (extent != nullptr) {
     const double highest_m = std::max(std::abs(extent->highest_msl_m - station.height_msl_m),
@@ -41,11 +43,12 @@ ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emit
   }
   ClutterGrid grid;
   grid.azimuths = azimuthsOf(radar);
-  grid.ranges = static_cast<int>(std::ceil(farthest_m / step_m)) + 1;
+  grid.ranges = static_cast<int>(std::ceil(farthest_m / step_m)) + 1 + steps / 2;
   grid.step_m = static_cast<float>(step_m);
-  grid.part_of_step = static_cast<float>(cell_m / step_m);
+  grid.steps_of_cell = steps;
+  grid.part_of_step = steps > 1 ? 1 : static_cast<float>(cell_m / step_m);
   const double repeat_m = radar.waveform ? radar.waveform->unambiguousRange_m() : 0;
-  if (repeat_m > 2 * step_m && repeat_m < reach) {
+  if (repeat_m > 2 * std::max(cell_m, step_m) && repeat_m < reach) {
     grid.trips = {static_cast<float>(repeat_m), static_cast<int>(std::ceil(reach / repeat_m)),
                   static_cast<float>(reach)};
   }
@@ -109,9 +112,9 @@ ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar) {
 }
 
 std::size_t clutterMapBytes(const scenario::Emitter& radar) {
-  return hasClutterMap(radar)
-             ? static_cast<std::size_t>(azimuthsOf(radar)) * (kMaxRanges + 1) * sizeof(ClutterCell)
-             : 0;
+  return hasClutterMap(radar) ? static_cast<std::size_t>(azimuthsOf(radar)) *
+                                    (kMaxRanges + 1 + ClutterGrid::kMaxSteps / 2) * sizeof(ClutterCell)
+                              : 0;
 }
 
 std::vector<double> clutterPostRanges(const ClutterGrid& grid, double post_spacing_m) {

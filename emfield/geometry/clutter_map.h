@@ -26,8 +26,8 @@
 namespace emscape::emfield {
 
 /// A cell of the map: the sum over the surface of cross section over range^4, per radian of azimuth and in
-/// one range cell of the radar, with the two-way loss of the atmosphere (1 / (m2 rad)); and the sine of the
-/// elevation of the surface that echoes, seen from the middle of the cell; of cells without an echo that of a
+/// the radar's range cell about the middle of the map's, with the two-way loss of the atmosphere (1 / (m2
+/// rad)); and the sine of the elevation of the surface that echoes; of cells without an echo that of a
 /// neighbour.
 struct ClutterCell {
   float echo = 0;
@@ -48,9 +48,12 @@ struct EchoTrips {
 
 /// Positions of the cells: azimuth clockwise from north, 2 pi i / azimuths; slant range (n + 1/2) step.
 struct ClutterGrid {
+  static constexpr int kMaxSteps = 5;
+
   int azimuths = 0, ranges = 0;
-  float step_m = 1;        ///< >= the radar's range cell
-  float part_of_step = 1;  ///< range cell over step
+  float step_m = 1;
+  int steps_of_cell = 1;   ///< steps in the radar's range cell, an odd number up to kMaxSteps
+  float part_of_step = 1;  ///< range cell over step, if that is longer; else 1
   EchoTrips trips;
 
   std::size_t cells() const { return static_cast<std::size_t>(azimuths) * static_cast<std::size_t>(ranges); }
@@ -144,18 +147,37 @@ struct ClutterMapTask {
       }
       before = here;
     });
+    sumOverRangeCell(row);
     normalize(row);
   }
 
  private:
-  /// From sums weighted by the echo to means.
+  /// From sums over steps to sums over the range cell about the middle of each step.
+  EMSCAPE_HD void sumOverRangeCell(ClutterCell* row) const {
+    const int beside = grid.steps_of_cell / 2;
+    ClutterCell before[ClutterGrid::kMaxSteps / 2];  // as they were, the nearest first
+    for (int n = 0; n < grid.ranges; ++n) {
+      const ClutterCell here = row[n];
+      for (int i = 0; i < beside; ++i) {
+        const ClutterCell behind = n + 1 + i < grid.ranges ? row[n + 1 + i] : ClutterCell{};
+        row[n].echo += before[i].echo + behind.echo;
+        row[n].sine += before[i].sine + behind.sine;
+      }
+      for (int i = beside - 1; i > 0; --i) before[i] = before[i - 1];
+      before[0] = here;
+    }
+  }
+  /// From sums of depths weighted by the echo to means of sines, seen from the middles of the cells.
   EMSCAPE_HD void normalize(ClutterCell* row) const {
     int first = 0;
     while (first < grid.ranges && !(row[first].echo > 0)) ++first;
     if (first == grid.ranges) return;
-    float sine = row[first].sine / row[first].echo;
+    const auto sineAt = [&](int n) {
+      return row[n].sine / (row[n].echo * grid.step_m * (static_cast<float>(n) + 0.5f));
+    };
+    float sine = sineAt(first);
     for (int n = 0; n < grid.ranges; ++n) {
-      if (row[n].echo > 0) sine = row[n].sine / row[n].echo;
+      if (row[n].echo > 0) sine = sineAt(n);
       row[n].sine = sine > -1 ? sine : -1.0f;
     }
   }
@@ -195,8 +217,7 @@ struct ClutterMapTask {
                           std::pow(10.0, -0.2 * static_cast<double>(air_db_per_m) * range_m) *
                           static_cast<double>(grid.part_of_step);
       row[n].echo += static_cast<float>(echo);
-      // At the middle of the cell, which is where it is interpolated; its mean is taken at the end.
-      row[n].sine -= static_cast<float>(echo * depth_m * per_m / (n + 0.5));
+      row[n].sine -= static_cast<float>(echo * depth_m);  // becomes a mean sine at the end
     }
   }
 };
@@ -222,8 +243,8 @@ struct ClutterMapInputs {
 ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar);
 
 /// The task of a radar's map without the ground; empty if it has no map. Two rows per beamwidth, 90 to 1440
-/// in all; cells as long as the range cell, at most 2048 as far as the region's farthest point: at most 24
-/// MB.
+/// in all; five, three or one cell per range cell, at most 2048 as far as the region's farthest point: at
+/// most 24 MB.
 /// @param extent  of paths that may extend beyond the region; null: none. The positions of the cells do not
 /// change
 std::optional<ClutterMapTask> clutterMapTask(const scenario::Scenario& scenario,

@@ -317,10 +317,8 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
     Emitter& with_target = scene->scenario->emitters[detection.radar];
     with_target.receiver.swerling = target.swerling;
     with_target.receiver.target_rcs_m2 = row.rcs_m2;
-    if (with_target.clutter) {
-      with_target.clutter->target_radial_speed_mps =
-          speedOverGround_mps(snapshot, detection.radar, target.platform, terrain);
-    }
+    if (with_target.clutter)
+      aimFilter(snapshot, detection.radar, target.platform, terrain, *with_target.clutter);
     try {
       budget = pathBudget(scene->snapshot, detection.radar, {carrier.position, carrier.height_msl_m}, model_,
                           terrain);

@@ -15,10 +15,11 @@ PathClutter::PathClutter(const scenario::Snapshot& snapshot, int radar, double r
                                    makeStation(state.position, state.height_msl_m, scenario.atmosphere));
   if (!task) return;
   task_ = *task;
-  // Cells beyond the point do not affect those before it, but by echoes of later trips.
+  // Cells beyond the point's range cell do not affect it, but by echoes of later trips.
   const EchoTrips& trips = task_.grid.trips;
   const double farthest_m = trips.count > 1 ? std::max(range_m_, static_cast<double>(trips.end_m)) : range_m_;
-  task_.grid.ranges = static_cast<int>(farthest_m / static_cast<double>(task_.grid.step_m)) + 2;
+  task_.grid.ranges = static_cast<int>(farthest_m / static_cast<double>(task_.grid.step_m)) + 2 +
+                      task_.grid.steps_of_cell / 2;
   post_ranges_m_ = clutterPostRanges(task_.grid, postSpacing_m(terrain));
   task_.ground = groundPosts(terrain, post_ranges_m_);
 }

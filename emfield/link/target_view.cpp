@@ -24,11 +24,12 @@ void clipToLeg(const std::vector<scenario::TrackPoint>& track, double t_s, doubl
   }
 }
 
+constexpr double kHalfStep_s = 0.01;
+
 /// Rate (m/s) of the distance between a radar and a platform.
 /// @param has_radar_moved  false: the radar stays where it is at the time
 double rangeRate_mps(const scenario::Snapshot& snapshot, int radar, int platform,
                      const scenario::Terrain* terrain, bool has_radar_moved) {
-  constexpr double kHalfStep_s = 0.01;
   const scenario::Scenario& scenario = *snapshot.scenario;
   const int carrier = scenario.emitters[static_cast<std::size_t>(radar)].platform;
   double from_s = snapshot.time_s - kHalfStep_s, to_s = snapshot.time_s + kHalfStep_s;
@@ -66,6 +67,36 @@ double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platfo
 double speedOverGround_mps(const scenario::Snapshot& snapshot, int radar, int platform,
                            const scenario::Terrain* terrain) {
   return rangeRate_mps(snapshot, radar, platform, terrain, false);
+}
+
+double groundSpread_mps(const scenario::Snapshot& snapshot, int radar, int platform,
+                        const scenario::Terrain* terrain) {
+  const scenario::Emitter& emitter = snapshot.scenario->emitters[static_cast<std::size_t>(radar)];
+  const auto carrier = static_cast<std::size_t>(emitter.platform);
+  const scenario::PlatformState& from = snapshot.platforms[carrier];
+  double from_s = snapshot.time_s - kHalfStep_s, to_s = snapshot.time_s + kHalfStep_s;
+  clipToLeg(snapshot.scenario->platforms[carrier].track, snapshot.time_s, from_s, to_s);
+  if (!(to_s > from_s)) from_s = to_s - kHalfStep_s;
+  const auto positionAt = [&](double t_s) {
+    return toEcef(scenario::instantAt(snapshot.scenario, terrain, t_s).platforms[carrier].position);
+  };
+  const Vec3d velocity_mps = (positionAt(to_s) - positionAt(from_s)) * (1 / (to_s - from_s));
+  const Station station = makeStation(from.position, from.height_msl_m, snapshot.scenario->atmosphere);
+  const Vec3d ray = toEcef(snapshot.platforms[static_cast<std::size_t>(platform)].position) - station.ecef_m;
+  const Vec3d &east = station.geodesy.east, &north = station.geodesy.north;
+  const double across_mps =
+      std::abs(dot(velocity_mps, east) * dot(ray, north) - dot(velocity_mps, north) * dot(ray, east)) /
+      length(ray);
+  return across_mps * degToRad(emitter.antenna->beamwidth_az_deg) / (4 * std::sqrt(std::log(2.0)));
+}
+
+void aimFilter(const scenario::Snapshot& snapshot, int radar, int platform, const scenario::Terrain* terrain,
+               scenario::Clutter& clutter) {
+  clutter.target_radial_speed_mps = speedOverGround_mps(snapshot, radar, platform, terrain);
+  if (clutter.mti) {
+    clutter.mti->surface_spread_mps =
+        std::hypot(clutter.mti->surface_spread_mps, groundSpread_mps(snapshot, radar, platform, terrain));
+  }
 }
 
 long long looksUntil(double first_s, double time_s, double period_s) {

@@ -22,6 +22,19 @@ double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platfo
 double speedOverGround_mps(const scenario::Snapshot& snapshot, int radar, int platform,
                            const scenario::Terrain* terrain);
 
+/// Standard deviation (m/s) of the radial speed of the ground across a radar's beam in the direction of a
+/// platform, by the radar's own motion: v cos(elevation) sin(psi) beamwidth / (4 (ln 2)^(1/2)) for a speed v
+/// and an azimuth psi from the track, of a Gaussian beam used both ways. 0 for a radar at rest.
+/// @see M. A. Richards, Fundamentals of Radar Signal Processing, section 5.2: a bandwidth of 2 v beamwidth
+/// sin(psi) / lambda between the half-power points of one way
+double groundSpread_mps(const scenario::Snapshot& snapshot, int radar, int platform,
+                        const scenario::Terrain* terrain);
+
+/// Gives a radar's filter what it sees of a target: speedOverGround_mps() and, added to its key's spread,
+/// groundSpread_mps().
+void aimFilter(const scenario::Snapshot& snapshot, int radar, int platform, const scenario::Terrain* terrain,
+               scenario::Clutter& clutter);
+
 /// Number of looks of a radar from the time of its first look until another time.
 /// @param period_s  between looks, > 0
 long long looksUntil(double first_s, double time_s, double period_s);

@@ -29,6 +29,9 @@ constexpr int kFewAzimuths = 396, kMaxAzimuths = 1584;
 constexpr double kFinestStep_m = 50;  // for positions that are closer
 constexpr int kMaxHeights = 1024, kMaxRanges = 2000;
 constexpr double kUsablePart = 0.8;  // fraction of the height below the absorber
+/// Positions in a narrower sector have as many height steps as a single path, if the ground's slopes need
+/// them.
+constexpr double kNarrowSector_rad = 0.2 * kPi / 180;
 
 void requireWithinLimit(const ModelLimit& limit, double value_si) {
   if (!limit.holds(value_si)) throw Error(ErrorCode::bad_input, outsideMessage(limit, value_si));
@@ -71,7 +74,7 @@ double planAngle_rad(const EmitterInputs& emitter, const DomainNeeds& needs, dou
   }
   const double wanted_rad = groundAngle_rad(needs);
   if (wanted_rad <= angle_rad) return angle_rad;
-  const int intervals = needs.is_single ? kPeMaxIntervals : kSlopeIntervals;
+  const int intervals = needs.is_single || needs.is_narrow ? kPeMaxIntervals : kSlopeIntervals;
   const double affordable_rad = affordableAngle_rad(emitter, wanted_rad, height_m, intervals) * (1 - 1e-9);
   const std::string ground = fmt::format("slopes of {:.3g} degrees and ridges seen at {:.3g}",
                                          radToDeg(needs.slope_rad), radToDeg(needs.ridge_rad));
@@ -194,7 +197,7 @@ void planRanges(const RadialInputs& radials, PePlan& plan) {
 void addGroundNeeds(const PathInputs& inputs, const RadialInputs& radials, double curvature_per_m,
                     DomainNeeds& needs) {
   constexpr int kAzimuths = 32;
-  constexpr double kHeldPart = 0.98;  // of the steps
+  const double held_part = needs.is_narrow ? 1 : 0.98;  // of the steps
   if (!radials.has_terrain) return;
   const double step_m = std::max(inputs.post_spacing_m, kFinestStep_m);
   const int count = int(radials.farthest_m / step_m) + 1;
@@ -206,7 +209,7 @@ void addGroundNeeds(const PathInputs& inputs, const RadialInputs& radials, doubl
                    count, ground_msl_m.data());
     ground.add(ground_msl_m.data(), count, step_m, inputs.site.height_msl_m, curvature_per_m);
   }
-  needs.slope_rad = ground.slope_rad(kHeldPart);
+  needs.slope_rad = ground.slope_rad(held_part);
   needs.ridge_rad = ground.ridge_rad;
 }
 
@@ -255,7 +258,10 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
   if (settings.top_m > 0) height_m = needs.is_single ? std::max(settings.top_m, height_m) : settings.top_m;
   max_angle_rad = planAngle_rad(emitter, needs, height_m, angle_why);
   if (!needs.is_single && settings.top_m <= 0) {
-    const int intervals = needs.post_spacing_m > 0 ? kTerrainIntervals : kPlainIntervals;
+    const bool is_steep = needs.is_narrow && max_angle_rad > kAngle_rad;  // slopes reflect to any height
+    const int intervals = is_steep                   ? kPeMaxIntervals
+                          : needs.post_spacing_m > 0 ? kTerrainIntervals
+                                                     : kPlainIntervals;
     const double affordable = affordable_m(emitter, max_angle_rad, intervals) * (1 - 1e-9);
     height_m = std::max(height_m, std::min(needs.wanted_m, affordable));
   }
@@ -364,6 +370,7 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   needs.post_spacing_m = radials.has_terrain ? inputs.post_spacing_m : 0;
   needs.farthest_m = radials.farthest_m;
   needs.spacing_m = radials.spacing_m;
+  needs.is_narrow = radials.azimuth_span_rad <= kNarrowSector_rad && radials.spacing_m > 0;
 
   PePlan plan;
   const RefractivityAlongPath air =

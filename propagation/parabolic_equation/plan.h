@@ -54,7 +54,8 @@ struct DomainNeeds {
   double post_spacing_m = 0;
   double farthest_m = 0;
   double spacing_m = 0;  ///< of the positions along the ground, resolved by the range steps; 0: one position
-  bool is_single = false;  ///< one azimuth: the domain contains wanted_m at any cost
+  bool is_single = false;  ///< one path: the domain contains wanted_m at any cost
+  bool is_narrow = false;  ///< few azimuths: the angle is that of a single path
   double slope_rad = 0;    ///< slopes of the ground that the band should hold
   double ridge_rad = 0;    ///< largest angle at which the field passes a ridge
 };

@@ -102,8 +102,8 @@ std::vector<std::string> peWarningMessages(unsigned warnings) {
   if (staircase_percent > 0) {
     messages.push_back(fmt::format(
         "{:.1f} % of the ground is steeper or more sharply bent than the band of the equation holds, and "
-        "taken "
-        "as steps of a staircase; {}",
+        "taken as steps of a staircase; with another largest angle the field differs by some dB in sight and "
+        "by 10 to 30 dB deep in shadow; {}",
         staircase_percent,
         holds_deg > 0 ? fmt::format("'max_angle_deg: {}' holds most of it", holds_deg)
                       : "no larger 'max_angle_deg' that the height steps afford holds most of it"));

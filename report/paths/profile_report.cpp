@@ -53,6 +53,7 @@ Json geometryJson(const PathBudget& budget) {
             {"off_axis_deg", radToDeg(budget.pointing.off_axis_rad)},
             {"antenna_azimuth_deg", radToDeg(budget.pointing.azimuth_rad)},
             {"antenna_elevation_deg", radToDeg(budget.pointing.elevation_rad)}};
+  if (budget.look_pattern_db) json["look_pattern_db"] = number(*budget.look_pattern_db);
   if (const auto& reflected = budget.pointing.reflected) {
     const auto depression_sine = static_cast<double>(budget.excess.reflection->depression_sine);
     json["reflected_launch_elevation_deg"] = -radToDeg(std::asin(depression_sine));
@@ -271,7 +272,7 @@ std::string profileText(const ProfileReport& report) {
   addCompared(out, report.compared, budget);
   const std::string air = airSource(*report.snapshot.scenario);
   if (!air.empty()) out.add("\nAir: {}\n", air);
-  out.add("\nclutter: {}\n", emfield::clutterText(*report.snapshot.scenario, emitterOf(report)));
+  out.add("\nclutter along the path: {}\n", emfield::clutterText(*report.snapshot.scenario, emitterOf(report)));
   if (!budget.warnings.empty()) out.add("\n");
   for (const std::string& warning : budget.warnings) out.add("Warning: {}\n", warning);
   out.add("\n{}\n", budget.verdict);

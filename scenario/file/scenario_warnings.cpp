@@ -442,8 +442,8 @@ void warnOfMovingRadars(const Scenario& scenario, const Section& root, ParseCont
         fmt::format(
             "radar '{}' moves at up to {:.0f} m/s: the Doppler shift of the ground by that is taken as "
             "compensated by the radar, its altitude line and side lobes are left out, and abeam the "
-            "width of the beam spreads the clutter by {:.2g} m/s, which 'surface_spread_m_s: {:.2g}' "
-            "would include",
+            "width of the beam spreads the clutter by {:.2g} m/s: 'link' and 'exposure' compute it towards "
+            "their targets, elsewhere 'surface_spread_m_s: {:.2g}' would include it",
             radar.name, speed_mps, spread_mps,
             std::hypot(spread_mps, radar.clutter->mti->surface_spread_mps)));
   }

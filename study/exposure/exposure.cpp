@@ -144,10 +144,8 @@ class Track {
       if (emitter.kind != EmitterKind::radar || isOwn(radar)) continue;
       emitter.receiver.target_rcs_m2 = emfield::rcsTowards_m2(snapshot, target, radar);
       emitter.receiver.swerling = target.swerling;
-      if (emitter.clutter) {
-        emitter.clutter->target_radial_speed_mps =
-            emfield::speedOverGround_mps(snapshot, radar, target.platform, terrain_.get());
-      }
+      if (emitter.clutter)
+        emfield::aimFilter(snapshot, radar, target.platform, terrain_.get(), *emitter.clutter);
     }
     return seen;
   }

@@ -10,11 +10,13 @@
 #include "emfield/excess/clutter_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/study/maps/area.h"
 #include "emscape/study/maps/coverage.h"
 #include "emscape/volume/dense_volume.h"
+#include "propagation/registry/model_info.h"
 #include "study/maps/contour_lines.h"
 
 namespace emscape::study {
@@ -111,36 +113,63 @@ class Solver {
   /// @param emitter  index in the scenarios of solve()
   Solver(const VerticalRequest& request, int emitter, const VerticalDiagram& diagram,
          emfield::FieldOptions options)
-      : request_(request), emitter_(emitter), options_(std::move(options)) {
-    auto surface = std::make_shared<emfield::Surface>();
-    surface->width = request.ranges;
-    surface->height = static_cast<int>(request.azimuths_deg.size());
-    surface->reference = request.axis;
-    surface->heights_m = diagram.heights_m;
-    for (const double azimuth_deg : request.azimuths_deg) {
-      for (const double range_m : diagram.ranges_m) {
-        const GeodeticPosition position =
-            geodesicDirect(diagram.latitude_deg, diagram.longitude_deg, degToRad(azimuth_deg), range_m);
-        surface->positions.push_back({position.latitude_deg, position.longitude_deg});
-      }
-    }
-    options_.surface = surface;
+      : request_(request), emitter_(emitter), diagram_(diagram), options_(std::move(options)) {
     options_.allow_missing_terrain = true;
     options_.quantities.clear();
   }
 
+  /// A model that marches does so for each cut by itself: along the cut, not between azimuths beside it.
   Solved solve(const scenario::Snapshot& snapshot, const scenario::TerrainPtr& terrain) const {
-    emfield::FieldSolver solver(snapshot.scenario, terrain, options_);
+    const scenario::Emitter& emitter = snapshot.scenario->emitters[static_cast<std::size_t>(emitter_)];
+    const std::size_t cuts = request_.azimuths_deg.size();
+    Solved solved;
+    if (propagation::modelInfo(emitter.propagation.model).radial == nullptr) {
+      solveCuts(0, cuts, snapshot, terrain, solved);
+      return solved;
+    }
+    for (std::size_t cut = 0; cut < cuts; ++cut) {
+      const auto done = static_cast<double>(cut), count = static_cast<double>(cuts);
+      const WorkPart part("", done / count, (done + 1) / count);
+      solveCuts(cut, cut + 1, snapshot, terrain, solved);
+    }
+    return solved;
+  }
+
+ private:
+  std::shared_ptr<emfield::Surface> surfaceOf(std::size_t begin, std::size_t end) const {
+    auto surface = std::make_shared<emfield::Surface>();
+    surface->width = request_.ranges;
+    surface->height = static_cast<int>(end - begin);
+    surface->reference = request_.axis;
+    surface->heights_m = diagram_.heights_m;
+    for (std::size_t cut = begin; cut < end; ++cut) {
+      for (const double range_m : diagram_.ranges_m) {
+        const GeodeticPosition position = geodesicDirect(diagram_.latitude_deg, diagram_.longitude_deg,
+                                                         degToRad(request_.azimuths_deg[cut]), range_m);
+        surface->positions.push_back({position.latitude_deg, position.longitude_deg});
+      }
+    }
+    return surface;
+  }
+
+  /// Adds the fields of some cuts.
+  void solveCuts(std::size_t begin_cut, std::size_t end_cut, const scenario::Snapshot& snapshot,
+                 const scenario::TerrainPtr& terrain, Solved& solved) const {
+    emfield::FieldOptions options = options_;
+    options.surface = surfaceOf(begin_cut, end_cut);
+    emfield::FieldSolver solver(snapshot.scenario, terrain, options);
     const std::size_t channel = *channelOf(emitter_, solver.channels());
     solver.update(snapshot);
     const auto volume = solver.volumes()[channel].host();
-    Solved solved;
-    solved.warnings = solver.warnings();
+    for (std::string& warning : solver.warnings()) {
+      if (std::find(solved.warnings.begin(), solved.warnings.end(), warning) == solved.warnings.end())
+        solved.warnings.push_back(std::move(warning));
+    }
     const std::size_t ranges = static_cast<std::size_t>(request_.ranges);
-    const std::size_t positions = ranges * request_.azimuths_deg.size();
-    for (std::size_t cut = 0; cut < request_.azimuths_deg.size(); ++cut) {
+    const std::size_t positions = ranges * (end_cut - begin_cut);
+    for (std::size_t cut = 0; cut < end_cut - begin_cut; ++cut) {
       std::vector<float> values;
-      for (std::size_t k = 0; k < options_.surface->heights_m.size(); ++k) {
+      for (std::size_t k = 0; k < options.surface->heights_m.size(); ++k) {
         for (std::size_t p = cut * ranges; p < (cut + 1) * ranges; ++p) {
           const bool is_valid = volume->first_valid_k.empty() || k >= volume->first_valid_k[p];
           values.push_back(is_valid ? volume->values[k * positions + p] : NAN);
@@ -155,12 +184,11 @@ class Solver {
                                           ground.begin() + begin + static_cast<std::ptrdiff_t>(ranges));
       }
     }
-    return solved;
   }
 
- private:
   const VerticalRequest& request_;
   int emitter_;
+  const VerticalDiagram& diagram_;
   emfield::FieldOptions options_;
 };
 

@@ -56,6 +56,17 @@ inline GeodeticPosition pointAt(const scenario::Scenario& scenario, double east_
   return GeoFrame(grid.frame).toGeodetic(middle + Vec3d{east_m, north_m, 0});
 }
 
+/// Moves the first platform northwards, through the region's middle at the time 0.
+inline void flyNorth(scenario::Scenario& scenario, double speed_mps, double height_ellipsoid_m) {
+  std::vector<scenario::TrackPoint>& track = scenario.platforms[0].track;
+  track.clear();
+  for (const double t_s : {-10.0, 10.0}) {
+    track.push_back(fixedPlatform(pointAt(scenario, 0, speed_mps * t_s)).track[0]);
+    track.back().t_s = t_s;
+    track.back().position.height_ellipsoid_m = height_ellipsoid_m;
+  }
+}
+
 /// A radar in the middle of a line of voxels, and a jammer.
 inline std::shared_ptr<scenario::Scenario> duel(const scenario::Emitter& radar,
                                                 const scenario::Emitter& jammer, double jammer_east_m,

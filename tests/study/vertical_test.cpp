@@ -88,6 +88,59 @@ TEST(Vertical, SLOW_ParabolicEquationIsNearProfile) {
   EXPECT_LT(differences_db[differences_db.size() * 9 / 10], 4.0);  // nulls
 }
 
+// Over mountains the largest angle decides: with that of maps a point in the shadow was 20 dB and more too
+// strong. What remains is the convergence of the march itself (docs/models.md).
+TEST(Vertical, SLOW_ParabolicEquationOverMountainsIsNearProfile) {
+  constexpr double kLatitude_deg = 44.2706, kLongitude_deg = -71.3033;
+  for (const double frequency_hz : {0.3e9, 1e9}) {
+    auto scenario = std::make_shared<scenario::Scenario>(*jacksboro());
+    constexpr int kMast = 2;
+    scenario::Emitter& emitter = scenario->emitters[kMast];
+    emitter.frequency_hz = frequency_hz;
+    emitter.propagation = {};
+    emitter.propagation.model = propagation::PropagationModel::parabolic_equation;
+    scenario->region.origin.latitude_deg = kLatitude_deg;
+    scenario->region.origin.longitude_deg = kLongitude_deg;
+    scenario->platforms = {scenario->platforms[static_cast<std::size_t>(emitter.platform)]};
+    scenario->emitters = {emitter};
+    scenario->emitters[0].platform = 0;
+    scenario->placed_receivers.clear();
+    scenario::SitePosition& site = scenario->platforms[0].track[0].position;
+    site.latitude_deg = kLatitude_deg;
+    site.longitude_deg = kLongitude_deg;
+    site.height_agl_m = 20;
+    scenario->terrain.emplace();
+    scenario->terrain->files = {test::sourceFile("tests/data/dem/N44W072.tif")};
+    scenario->terrain->locations = {{scenario->terrain->files[0]}};
+    scenario->output.floor = -300;
+    const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
+    const scenario::Snapshot snapshot = scenario::instantAt(scenario, terrain.get(), 0);
+    VerticalRequest request = small(0, HeightReference::mean_sea_level);
+    request.quantity = scenario::Quantity::power_density_dbwm2;
+    request.threshold = -60;
+    request.time_s = 0;
+    request.azimuths_deg = {20, 250};
+    request.range_m = 6000;
+    const VerticalDiagram diagram = computeVertical(scenario, terrain, request, {});
+    std::vector<double> differences_db;
+    std::mt19937 random(3);
+    while (differences_db.size() < 14) {
+      const VerticalCut& cut = diagram.cuts[differences_db.size() % 2];
+      const std::size_t i = 15 + random() % 35, k = random() % 40;
+      const double above_m = diagram.heights_m[k] - static_cast<double>(cut.ground_msl_m[i]);
+      if (above_m < 20) continue;
+      const emfield::PathEnd end = endAt(placeOf(diagram, cut, i), diagram.heights_m[k]);
+      const emfield::PathBudget budget = emfield::pathBudget(
+          snapshot, 0, end, propagation::PropagationModel::parabolic_equation, terrain.get());
+      differences_db.push_back(
+          std::abs(static_cast<double>(cut.values[k * 50 + i]) - budget.find("power_density_dbwm2")->value));
+    }
+    std::sort(differences_db.begin(), differences_db.end());
+    EXPECT_LT(differences_db[7], 2) << frequency_hz;
+    EXPECT_LT(differences_db[12], 8) << frequency_hz;
+  }
+}
+
 /// A mast in a hollow of the hills of Jacksboro, by parabolic_equation at 5 GHz.
 std::shared_ptr<scenario::Scenario> mastInAHollow() {
   auto scenario = std::make_shared<scenario::Scenario>(*jacksboro());
