@@ -272,7 +272,8 @@ std::string profileText(const ProfileReport& report) {
   addCompared(out, report.compared, budget);
   const std::string air = airSource(*report.snapshot.scenario);
   if (!air.empty()) out.add("\nAir: {}\n", air);
-  out.add("\nclutter along the path: {}\n", emfield::clutterText(*report.snapshot.scenario, emitterOf(report)));
+  out.add("\nclutter along the path: {}\n",
+          emfield::clutterText(*report.snapshot.scenario, emitterOf(report)));
   if (!budget.warnings.empty()) out.add("\n");
   for (const std::string& warning : budget.warnings) out.add("Warning: {}\n", warning);
   out.add("\n{}\n", budget.verdict);
