@@ -176,7 +176,7 @@ void expectWithinFactor5(unsigned first_seed, int count, double longest_s) {
   setThreadLimit(1);
   const test::TemporaryFolder folder;
   const std::string file = folder / "drawn.yaml";
-  int compared = 0;
+  int compared = 0, beyond = 0;
   for (unsigned seed = first_seed; compared < count && seed < first_seed + 10 * static_cast<unsigned>(count);
        ++seed) {
     const std::string text = Drawn(seed).scenario();
@@ -200,21 +200,24 @@ void expectWithinFactor5(unsigned first_seed, int count, double longest_s) {
         solver.update(scenario::snapshotAt(parsed.scenario, terrain.get(), t_s));
       const double needed_s = processorTime_s() - begin_s - estimating_s;
       ++compared;
+      constexpr double kMost = 7;  // single ones, with the processor's other work
       // Shorter ones are "below 1 s" to the user, and of a size that the clock and the caches disturb.
       constexpr double kShort_s = 0.05;
       const double factor = std::max(estimate_s, kShort_s) / std::max(needed_s, kShort_s);
       const std::string ends =
           text.substr(0, 3000) + " ... " + text.substr(text.size() - std::min<std::size_t>(text.size(), 300));
-      EXPECT_GT(factor, 1 / 5.0) << seed << ": " << estimate_s << " s estimated, " << needed_s
-                                 << " s needed\n"
-                                 << ends;
-      EXPECT_LT(factor, 5) << seed << ": " << estimate_s << " s estimated, " << needed_s << " s needed\n"
-                           << ends;
+      beyond += factor < 1 / 5.0 || factor > 5;
+      EXPECT_GT(factor, 1 / kMost) << seed << ": " << estimate_s << " s estimated, " << needed_s
+                                   << " s needed\n"
+                                   << ends;
+      EXPECT_LT(factor, kMost) << seed << ": " << estimate_s << " s estimated, " << needed_s << " s needed\n"
+                               << ends;
     } catch (const Error&) {  // a combination that is refused
     }
   }
   setThreadLimit(0);
   EXPECT_EQ(compared, count);
+  EXPECT_LE(beyond, count / 20) << "beyond a factor of 5";
 }
 
 TEST(WorkEstimate, IsWithinAFactorOf5OfDrawnScenarios) {
