@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include "base/math/fast_math.h"
 #include "base/math/simd.h"
@@ -23,7 +24,6 @@ namespace emscape::propagation {
 namespace {
 
 constexpr int kLanes = 16;
-static_assert(ExcessScratch::kMinPosts >= kLanes);
 using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
 using LaneBits = std::uint32_t __attribute__((vector_size(kLanes * sizeof(float))));
 
@@ -41,13 +41,24 @@ void setAll(float number, Lanes& lanes) {
 void takeLarger(const Lanes& other, Lanes& largest) {
   largest = other > largest ? other : largest;
 }
+/// The larger numbers of two halves.
+template <class Vector>
+void halve(const float* numbers, Vector& larger) {
+  Vector other;
+  std::memcpy(&larger, numbers, sizeof larger);
+  std::memcpy(&other, numbers + sizeof larger / sizeof(float), sizeof other);
+  larger = other > larger ? other : larger;
+}
 float largestOf(const Lanes& lanes) {
   float numbers[kLanes];
+  float __attribute__((vector_size(32))) eight;
+  float __attribute__((vector_size(16))) four;
   store(lanes, numbers);
-  float largest = numbers[0];
-#pragma omp simd reduction(max : largest)
-  for (int i = 0; i < kLanes; ++i) largest = numbers[i] > largest ? numbers[i] : largest;
-  return largest;
+  halve(numbers, eight);
+  std::memcpy(numbers, &eight, sizeof eight);
+  halve(numbers, four);
+  const float first = four[0] > four[1] ? four[0] : four[1], second = four[2] > four[3] ? four[2] : four[3];
+  return first > second ? first : second;
 }
 
 /// 1 / sqrt(x) for normal x > 0. @accuracy 2e-7 of itself
@@ -64,7 +75,10 @@ void inverseRoot(const Lanes& x, Lanes& root) {
 /// post unless stated otherwise; "plain" values leave out the earth's bulge.
 class LaneColumn {
  public:
-  LaneColumn(const DiffractionExcess& excess, const ExcessColumn& column, const ExcessScratch& scratch)
+  static constexpr int kArrays = 5;
+
+  /// @param memory  kArrays of at least the profile's posts, each a multiple of kLanes
+  LaneColumn(const DiffractionExcess& excess, const ExcessColumn& column, float* memory, std::size_t size)
       : model_(excess.model),
         column_(column),
         count_(column.profile.count - 2),
@@ -73,10 +87,8 @@ class LaneColumn {
         ground_m_(column.profile.height_msl_m[count_ + 1] - base_msl_m_),
         tx_m_(model_.raised_m(excess.tx_msl_m - base_msl_m_, 0)),
         edge_scale_(std::sqrt(2 * distance_m_ / model_.earth.wavelength_m)),
-        range_m_(scratch.even_ground_msl_m),
-        above_tx_m_(scratch.post_numbers),
-        rx_height_(above_tx_m_ + scratch.posts),
-        rx_range_(rx_height_ + scratch.posts) {
+        range_m_(memory),
+        posts_{memory + size, memory + 2 * size, memory + 3 * size, memory + 4 * size} {
     setPosts();
   }
 
@@ -85,11 +97,7 @@ class LaneColumn {
 
   /// Sets the losses (dB) of the first receivers. @return their number; the others have none
   int fill(float* loss_db) {
-    if (column_.count == 1) {
-      fillOne(*loss_db);
-      return 1;
-    }
-    visitFirst<false>(0);
+    visitFirst();
     const int lossy = firstOf(column_.count, [this](int k) {
       const float rx_m = heightOf(k);
       return slopeTo(rx_m) >= clear_slope_ && isClearOfEarth(rx_m);
@@ -98,32 +106,16 @@ class LaneColumn {
     // Receivers at or below the ground are one and the same.
     const float ground_m = heightOf(0);
     const int lowest = std::max(firstOf(lossy, [&](int k) { return heightOf(k) > ground_m; }) - 1, 0);
-    const int blocked = firstOf(lossy, [this](int k) { return slopeTo(heightOf(k)) > tx_slope_; });
-    const int clear = firstOf(lossy, [this](int k) { return slopeTo(heightOf(k)) >= clear_slope_; });
-    findRxSlopes(lowest, blocked, loss_db);
-    eachGroup<4, Relative::nearest>(std::max(lowest, blocked), clear, 1, count_, loss_db);
-    std::fill(loss_db + std::max(clear, lowest), loss_db + lossy, -HUGE_VALF);
-    setLosses(lowest, lossy, loss_db);
-    const int in_earth = firstOf(lossy, [this](int k) { return isClearOfEarth(heightOf(k)); });
-    addEarth(lowest, in_earth, loss_db);
+    const int in_earth =
+        isClearOfEarth(ground_m) ? 0 : firstOf(lossy, [this](int k) { return isClearOfEarth(heightOf(k)); });
+    thin(slopeTo(heightOf(lowest)), slopeTo(heightOf(lossy - 1)), in_earth > lowest);
+    for (int first = lowest; first < lossy; first += kLanes)
+      setLosses(first, std::min(first + kLanes, lossy), in_earth, loss_db);
     std::fill(loss_db, loss_db + lowest, loss_db[lowest]);
     return lossy;
   }
 
  private:
-  /// Measures of an obstacle's height above a line of sight, linear in the slope of the line.
-  enum class Relative {
-    rx_slope,        ///< slope from the receiver
-    nearest,         ///< over sqrt(d1 d2)
-    plain_rx_slope,  ///< rx_slope without the earth's bulge
-    plain_height
-  };
-  /// Maxima of a receiver.
-  struct Maxima {
-    float rx_slope = -HUGE_VALF, nearest = -HUGE_VALF;
-    float plain_rx_slope = -HUGE_VALF, plain_height_m = -HUGE_VALF;
-  };
-
   /// The first number for which `is` holds, and with it for those above; count: for none.
   template <class Is>
   static int firstOf(int count, const Is& is) {
@@ -141,10 +133,11 @@ class LaneColumn {
   float heightOf(int k) const { return model_.raised_m(column_.height_msl_m[k] - base_msl_m_, ground_m_); }
   float slopeTo(float rx_m) const { return (rx_m - tx_m_) / distance_m_; }
 
+  /// Sets ranges and heights of the posts, and of copies of the last one to whole lanes.
   void setPosts() {
     const double* const ranges_m = column_.profile.range_m + 1;
     const float* const heights_msl_m = column_.profile.height_msl_m + 1;
-    float *const range_m = range_m_, *const above_tx_m = above_tx_m_;
+    float *const range_m = range_m_, *const above_tx_m = posts_.above_tx_m;
     const float base_msl_m = base_msl_m_, tx_m = tx_m_;
     const float farthest_m = distance_m_ * (1 - 2.4e-7f);  // a post may be at the receivers in float
     const int count = count_;
@@ -156,181 +149,145 @@ class LaneColumn {
       above_tx_m[i] = heights_msl_m[i] - base_msl_m - tx_m;
       unknown += above_tx_m[i] - above_tx_m[i];
     }
-    for (int i = count; count > 0 && i < kLanes; ++i) {
+    for (int i = count; i % kLanes != 0; ++i) {
       range_m[i] = range_m[count - 1];
       above_tx_m[i] = above_tx_m[count - 1];
     }
     is_known_ = !std::isnan(unknown);
   }
-  /// Calls visitOne(index) for the first of each kLanes posts among first..last, counted from 1; and perhaps
-  /// for others.
-  template <class Visit>
-  void visit(int first, int last, const Visit& visitOne) const {
-    const int farthest = std::max(count_ - kLanes, 0);
-    for (int i = first - 1; i < last; i += kLanes) visitOne(std::min(i, farthest));
-  }
 
-  /// The first pass: maxima that are the same for all receivers, and those of one receiver, or what further
-  /// passes read.
-  /// @param slope  of the one receiver's line of sight
-  template <bool kOne>
-  Maxima visitFirst(float slope) {
+  /// The first pass: maxima that are the same for all receivers, and what further passes read.
+  void visitFirst() {
     const float clearance = -kKnifeEdgeClear<float> / edge_scale_;
-    Lanes tx, clear, plain_tx, rx, nearest, plain_rx, plain;
+    Lanes tx, clear, plain_tx;
     setAll(-HUGE_VALF, tx);
-    clear = plain_tx = rx = nearest = plain_rx = plain = tx;
-    visit(1, count_, [&](int i) {
+    clear = plain_tx = tx;
+    for (int i = 0; i < count_; i += kLanes) {
       Lanes range, above, root;
       load(range_m_ + i, range);
-      load(above_tx_m_ + i, above);
+      load(posts_.above_tx_m + i, above);
       const Lanes beyond = distance_m_ - range, product = range * beyond;
       inverseRoot(product, root);
-      const Lanes bulged = above + model_.half_curvature * product;
-      const Lanes per_range = beyond * root, per_beyond = root * root * range;
-      takeLarger(per_range * (bulged * root), tx);
+      const Lanes over_root = (above + model_.half_curvature * product) * root, per_range = beyond * root;
+      takeLarger(per_range * over_root, tx);
+      takeLarger(per_range * (over_root + clearance), clear);
       takeLarger(per_range * (above * root), plain_tx);
-      if constexpr (kOne) {
-        const Lanes line = slope * range, height = bulged - line;
-        takeLarger(height * per_beyond, rx);
-        takeLarger(height * root, nearest);
-        takeLarger((above - line) * per_beyond, plain_rx);
-        takeLarger(above - line, plain);
-      } else {
-        takeLarger(per_range * (bulged * root + clearance), clear);
-        store(bulged * per_beyond, rx_height_ + i);
-        store(range * per_beyond, rx_range_ + i);
-      }
-    });
+      store(over_root, posts_.height + i);
+      store(range * root, posts_.range + i);
+    }
     tx_slope_ = largestOf(tx);
     clear_slope_ = largestOf(clear);
     plain_tx_slope_ = largestOf(plain_tx);
-    return {largestOf(rx), largestOf(nearest), largestOf(plain_rx), largestOf(plain)};
   }
 
-  void fillOne(float& loss_db) {
-    const float rx_m = heightOf(0), slope = slopeTo(rx_m);
-    const Maxima maxima = visitFirst<true>(slope);
-    loss_db = slope <= tx_slope_ ? maxima.rx_slope : maxima.nearest;
-    setLosses(0, 1, &loss_db);
-    if (!isClearOfEarth(rx_m)) {
-      loss_db += earthCorrectionDb(rx_m, maxima.plain_rx_slope, maxima.plain_height_m);
-    }
-  }
-
-  /// The terms of a measure for kLanes posts: height - slope * range.
-  template <Relative kRelative>
-  void findTerms(int i, Lanes& height, Lanes& range) const {
-    constexpr bool is_rx = kRelative == Relative::rx_slope || kRelative == Relative::plain_rx_slope;
-    load((is_rx ? rx_height_ : above_tx_m_) + i, height);
-    load((is_rx ? rx_range_ : range_m_) + i, range);
-    if constexpr (kRelative == Relative::plain_rx_slope) {
-      Lanes range_m;
-      load(range_m_ + i, range_m);
-      height -= model_.half_curvature * range_m;
-    } else if constexpr (kRelative == Relative::nearest) {
-      const Lanes product = range * (distance_m_ - range);
-      Lanes root;
-      inverseRoot(product, root);
-      height = (height + model_.half_curvature * product) * root;
-      range *= root;
-    }
-  }
-  /// Maxima over the posts first..last of receivers begin..end - 1, some at a time.
-  template <int kReceivers, Relative kRelative>
-  void eachGroup(int begin, int end, int first, int last, float* largest) const {
-    for (int k = begin; k < end; k += kReceivers) {
-      float slope[kReceivers];
-      Lanes most[kReceivers];
-      for (int j = 0; j < kReceivers; ++j) {
-        slope[j] = slopeTo(heightOf(std::min(k + j, end - 1)));
-        setAll(-HUGE_VALF, most[j]);
+  /// Keeps posts among which are those of all maxima of the receivers from a lowest to a highest one.
+  ///
+  /// The measures of a post, seen from a receiver, are its height above the line of sight over sqrt(d1 d2),
+  /// its slope, and without the earth's bulge slope and height. Each falls faster with the slope for farther
+  /// posts. A post that does not exceed all nearer ones for the lowest receiver therefore exceeds none of
+  /// them for a higher one, and one that does not exceed all farther ones for the highest receiver none of
+  /// those for a lower one. Posts are compared with those of other lanes only. Receivers below the steepest
+  /// ray need the slopes, those above it the heights over sqrt(d1 d2).
+  /// @param in_earth  also the plain measures
+  void thin(float lowest_slope, float highest_slope, bool in_earth) {
+    struct Largest {
+      float nearest = -HUGE_VALF, rx_slope = -HUGE_VALF, plain_rx_slope = -HUGE_VALF, plain_m = -HUGE_VALF;
+    };
+    /// By how much the posts of a block exceed those so far in some measure: `over`. @return false: none does
+    const auto exceed = [&](int i, float slope, float rx_slope_at, float nearest_at, Largest& so_far,
+                            Lanes& over) {
+      Lanes range, height, range_m, above_tx_m, plain_rx_slope, plain_m;
+      load(posts_.range + i, range);
+      load(posts_.height + i, height);
+      const Lanes nearest = height - nearest_at * range, rx_slope = (height - rx_slope_at * range) * range;
+      over = nearest - so_far.nearest;
+      takeLarger(rx_slope - so_far.rx_slope, over);
+      if (in_earth) {
+        load(range_m_ + i, range_m);
+        load(posts_.above_tx_m + i, above_tx_m);
+        plain_rx_slope = (height - slope * range) * range - model_.half_curvature * range_m;
+        plain_m = above_tx_m - slope * range_m;
+        takeLarger(plain_rx_slope - so_far.plain_rx_slope, over);
+        takeLarger(plain_m - so_far.plain_m, over);
       }
-      visit(first, last, [&](int i) {
-        Lanes height, range;
-        findTerms<kRelative>(i, height, range);
-        for (int j = 0; j < kReceivers; ++j) takeLarger(height - slope[j] * range, most[j]);
-      });
-      for (int j = 0; j < kReceivers && k + j < end; ++j) largest[k + j] = largestOf(most[j]);
-    }
-  }
-
-  /// Sets the largest slopes from receivers begin..end - 1, which are below the steepest ray.
-  void findRxSlopes(int begin, int end, float* rx_slope) const {
-    constexpr int kFirst = 8, kGaps = kFirst - 1;
-    const int step = (end - 1 - begin) / kGaps;
-    if (step < 2) return eachGroup<4, Relative::rx_slope>(begin, end, 1, count_, rx_slope);
-    int highest[kFirst];
-    findHighest<kFirst>(begin, step, rx_slope, highest);
-    for (int gap = 0; gap < kGaps; ++gap) {
-      const int at = begin + gap * step;
-      eachGroup<4, Relative::rx_slope>(at + 1, at + step, std::min(highest[gap], highest[gap + 1]),
-                                       std::max(highest[gap], highest[gap + 1]), rx_slope);
-    }
-    eachGroup<4, Relative::rx_slope>(begin + kGaps * step + 1, end, 1, highest[kGaps], rx_slope);
-  }
-  /// The same for receivers begin, begin + step and so on. @param at  receives the posts seen highest
-  template <int kReceivers>
-  void findHighest(int begin, int step, float* rx_slope, int (&at)[kReceivers]) const {
-    float slope[kReceivers], lane[kLanes];
-    Lanes most[kReceivers], at_lanes[kReceivers], of_lane;
-    for (int i = 0; i < kLanes; ++i) lane[i] = static_cast<float>(i + 1);
-    load(lane, of_lane);
-    for (int j = 0; j < kReceivers; ++j) {
-      slope[j] = slopeTo(heightOf(begin + j * step));
-      setAll(-HUGE_VALF, most[j]);
-      setAll(0, at_lanes[j]);
-    }
-    visit(1, count_, [&](int i) {
-      Lanes height, range;
-      findTerms<Relative::rx_slope>(i, height, range);
-      const Lanes index = of_lane + static_cast<float>(i);
-      for (int j = 0; j < kReceivers; ++j) {
-        const Lanes here = height - slope[j] * range;
-        at_lanes[j] = here > most[j] ? index : at_lanes[j];
-        takeLarger(here, most[j]);
+      if (!(largestOf(over) >= 0)) return false;
+      so_far.nearest = std::max(so_far.nearest, largestOf(nearest));
+      so_far.rx_slope = std::max(so_far.rx_slope, largestOf(rx_slope));
+      if (in_earth) {
+        so_far.plain_rx_slope = std::max(so_far.plain_rx_slope, largestOf(plain_rx_slope));
+        so_far.plain_m = std::max(so_far.plain_m, largestOf(plain_m));
       }
-    });
-    for (int j = 0; j < kReceivers; ++j) {
-      const float largest = largestOf(most[j]);
-      Lanes number = at_lanes[j];
-      number = most[j] == largest ? number : Lanes{};
-      at[j] = std::clamp(static_cast<int>(largestOf(number)), 1, count_);
-      rx_slope[begin + j * step] = largest;
+      return true;
+    };
+    float* const under = posts_.range_m;  // minus the smaller of both; a block that is left out: infinite
+    Largest nearer, farther;
+    Lanes over, before;
+    const int blocks = (count_ + kLanes - 1) / kLanes;
+    for (int i = 0; i < blocks * kLanes; i += kLanes) {
+      if (exceed(i, lowest_slope, lowest_slope, std::max(lowest_slope, tx_slope_), nearer, over)) {
+        store(-over, under + i);
+      } else {
+        under[i] = HUGE_VALF;
+      }
+    }
+    for (int i = (blocks - 1) * kLanes; i >= 0; i -= kLanes) {
+      if (under[i] == HUGE_VALF) continue;
+      if (exceed(i, highest_slope, std::min(highest_slope, tx_slope_), highest_slope, farther, over)) {
+        load(under + i, before);
+        takeLarger(-over, before);
+        store(before, under + i);
+      } else {
+        under[i] = HUGE_VALF;
+      }
+    }
+    candidates_ = 0;
+    for (int block = 0; block < count_; block += kLanes) {
+      if (under[block] == HUGE_VALF) continue;
+      for (int i = block; i < std::min(block + kLanes, count_); ++i) {
+        const int to = candidates_;
+        candidates_ += under[i] <= 0 ? 1 : 0;
+        posts_.height[to] = posts_.height[i];
+        posts_.range[to] = posts_.range[i];
+        posts_.above_tx_m[to] = posts_.above_tx_m[i];
+        posts_.range_m[to] = range_m_[i];
+      }
     }
   }
 
-  /// Replaces maxima of receivers begin..end - 1 by Bullington's losses (dB): rx_slope of those below the
-  /// steepest ray, nearest of the others.
-  void setLosses(int begin, int end, float* loss_db) const {
-    const float* const height_msl_m = column_.height_msl_m;
-    const float lowest_m = model_.raised_m(-HUGE_VALF, ground_m_);
-    const float tx_slope = tx_slope_, tx_m = tx_m_, base_msl_m = base_msl_m_, distance_m = distance_m_;
-    const float edge_scale = edge_scale_;
+  /// Sets the losses (dB) of receivers first..end - 1, at most kLanes.
+  void setLosses(int first, int end, int in_earth, float* loss_db) {
+    float number[kLanes];
+    Lanes slope, nearest, rx_slope, plain_rx_slope, plain_m;
+    for (int j = 0; j < kLanes; ++j) number[j] = slopeTo(heightOf(std::min(first + j, end - 1)));
+    load(number, slope);
+    setAll(-HUGE_VALF, nearest);
+    rx_slope = plain_rx_slope = plain_m = nearest;
+    const bool some_below = number[0] <= tx_slope_, some_above = !(number[kLanes - 1] <= tx_slope_);
+    for (int i = 0; i < candidates_; ++i) {
+      const float range = posts_.range[i];
+      const Lanes above = posts_.height[i] - slope * range;
+      if (some_above) takeLarger(above, nearest);
+      if (some_below) takeLarger(above * range, rx_slope);
+      if (first >= in_earth) continue;
+      takeLarger(above * range - model_.half_curvature * posts_.range_m[i], plain_rx_slope);
+      takeLarger(posts_.above_tx_m[i] - slope * posts_.range_m[i], plain_m);
+    }
+    float heights[kLanes], slopes[kLanes], loss_of[kLanes];
+    store(nearest, heights);
+    store(rx_slope, slopes);
+    const float tx_slope = tx_slope_, edge_scale = edge_scale_, distance_m = distance_m_;
 #pragma omp simd
-    for (int k = begin; k < end; ++k) {
-      const float height_m = height_msl_m[k] - base_msl_m;
-      const float rx_m = height_m > lowest_m ? height_m : lowest_m;
-      const float above = tx_slope - (rx_m - tx_m) / distance_m, largest = loss_db[k];
-      const float product = above * largest;
-      const float relative = above >= 0 ? std::sqrt(product > 0 ? product : 0.0f) : largest;
-      loss_db[k] = bullingtonLossInLoopDb(edge_scale * relative, distance_m);
+    for (int j = 0; j < kLanes; ++j) {
+      const float over = tx_slope - number[j], product = over * slopes[j];
+      const float relative = over >= 0 ? std::sqrt(product > 0 ? product : 0.0f) : heights[j];
+      loss_of[j] = bullingtonLossInLoopDb(edge_scale * relative, distance_m);
     }
-  }
-  /// Adds the smooth-earth correction of receivers begin..end - 1.
-  void addEarth(int begin, int end, float* loss_db) {
-    constexpr int kReceivers = 4;
-    for (int first = begin; first < end; first += kReceivers) {
-      const int count = std::min(kReceivers, end - first);
-      float plain_rx_slope[kReceivers], height_m[kReceivers];
-      std::fill_n(plain_rx_slope, kReceivers, -HUGE_VALF);
-      std::fill_n(height_m, kReceivers, -HUGE_VALF);
-      if (slopeTo(heightOf(first)) < plain_tx_slope_) {
-        eachGroup<4, Relative::plain_rx_slope>(first, first + count, 1, count_, plain_rx_slope - first);
-        eachGroup<4, Relative::plain_height>(first, first + count, 1, count_, height_m - first);
-      }
-      for (int j = 0; j < count; ++j) {
-        loss_db[first + j] += earthCorrectionDb(heightOf(first + j), plain_rx_slope[j], height_m[j]);
-      }
+    store(plain_rx_slope, slopes);
+    store(plain_m, heights);
+    for (int j = 0; j < end - first; ++j) {
+      loss_db[first + j] = loss_of[j];
+      if (first + j < in_earth)
+        loss_db[first + j] += earthCorrectionDb(heightOf(first + j), slopes[j], heights[j]);
     }
   }
 
@@ -401,9 +358,14 @@ class LaneColumn {
   float base_msl_m_, distance_m_, ground_m_, tx_m_;
   float edge_scale_;  ///< from heights over sqrt(d1 d2) to nu
   bool is_known_ = true;
-  // Of the obstacles, at least kLanes:
-  float *range_m_, *above_tx_m_;
-  float *rx_height_, *rx_range_;       ///< terms of rx_slope
+  float* range_m_;  ///< of the obstacles
+  /// Of the obstacles; then of the candidates.
+  struct {
+    float* above_tx_m;
+    float *height, *range;  ///< terms of the height above a line of sight over sqrt(d1 d2)
+    float* range_m;         ///< of candidates alone
+  } posts_;
+  int candidates_ = 0;
   float tx_slope_ = -HUGE_VALF;        ///< largest slope from the transmitter to an obstacle
   float clear_slope_ = -HUGE_VALF;     ///< of the lowest line of sight that all obstacles are clear of
   float plain_tx_slope_ = -HUGE_VALF;  ///< tx_slope without the earth's bulge
@@ -412,11 +374,11 @@ class LaneColumn {
 };
 
 EMSCAPE_SIMD_CLONES unsigned fillInLanes(const DiffractionExcess& excess, const ExcessColumn& column,
-                                         const ExcessScratch& scratch, float* excess_db) {
+                                         float* memory, std::size_t size, float* excess_db) {
   int lossy = 0;
   bool is_known = true;
   if (column.profile.count > 1) {
-    LaneColumn receivers(excess, column, scratch);
+    LaneColumn receivers(excess, column, memory, size);
     is_known = receivers.isKnown();
     if (is_known) lossy = receivers.fill(excess_db);
   }
@@ -426,9 +388,12 @@ EMSCAPE_SIMD_CLONES unsigned fillInLanes(const DiffractionExcess& excess, const 
 
 }  // namespace
 
-unsigned DiffractionExcess::operator()(const ExcessColumn& column, const ExcessScratch& scratch,
+unsigned DiffractionExcess::operator()(const ExcessColumn& column, const ExcessScratch&,
                                        float* excess_db) const {
-  return fillInLanes(*this, column, scratch, excess_db);
+  thread_local std::vector<float> memory;
+  const std::size_t size = (static_cast<std::size_t>(column.profile.count) / kLanes + 1) * kLanes;
+  if (memory.size() < LaneColumn::kArrays * size) memory.resize(LaneColumn::kArrays * size);
+  return fillInLanes(*this, column, memory.data(), size, excess_db);
 }
 
 }  // namespace emscape::propagation
