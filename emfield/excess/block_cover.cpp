@@ -82,14 +82,14 @@ BlockCover::BlockCover(const scenario::TerrainView& terrain) : terrain_(terrain)
   columns_per_m_ = static_cast<float>(cover.cells_per_rad_lon / parallel_m);
 }
 
-std::uint8_t BlockCover::cellAt(int column, int row) const {
+inline std::uint8_t BlockCover::cellAt(int column, int row) const {
   const LandCoverView& cover = terrain_.cover;
   if (column < 0 || column >= cover.columns || row < 0 || row >= cover.rows) return LandCoverView::kNoClass;
   return cover.cells[static_cast<long long>(row) * cover.columns + column];
 }
 
 /// @param surface_m  height of the surface model above the ground; NaN: unknown
-float BlockCover::heightOf(std::uint8_t cell, float surface_m) const {
+inline float BlockCover::heightOf(std::uint8_t cell, float surface_m) const {
   if (std::isnan(surface_m)) return classes_.raise_m(cell);
   return classes_.isWater(cell) ? 0 : std::max(surface_m, 0.0f);
 }
@@ -119,18 +119,22 @@ unsigned BlockCover::raise(const RasterLine& line, int columns, float distance_m
   unsigned doubtful = 0;
   for (int n = 0; n < kPosts; ++n) {
     if (cells.state[n] == 0 || !(height_m[n] > -HUGE_VALF)) continue;
-    const float above_m =
-        terrain_.surface_count > 0 ? surface_m(line, cells.part[n], height_m[n] + base_msl_m) : NAN;
     const int i = west + cells.column[n], j = south + cells.row[n];
     const int beside_i = west + cells.beside_column[n], beside_j = south + cells.beside_row[n];
-    const float here_m = heightOf(cellAt(i, j), above_m);
+    const std::uint8_t here = cellAt(i, j);
+    if (cells.state[n] == 1 && beside_i == i && beside_j == j &&
+        terrain_.surface_count == 0) {  // most of them
+      height_m[n] += classes_.raise_m(here);
+      continue;
+    }
+    const float above_m =
+        terrain_.surface_count > 0 ? surface_m(line, cells.part[n], height_m[n] + base_msl_m) : NAN;
+    const float here_m = heightOf(here, above_m);
     float most_m = here_m, least_m = cells.state[n] == 1 ? here_m : 0;
-    if (beside_i != i || beside_j != j) {
-      for (const std::uint8_t cell : {cellAt(beside_i, j), cellAt(i, beside_j), cellAt(beside_i, beside_j)}) {
-        const float beside = heightOf(cell, above_m);
-        most_m = std::max(most_m, beside);
-        least_m = std::min(least_m, beside);
-      }
+    for (const std::uint8_t cell : {cellAt(beside_i, j), cellAt(i, beside_j), cellAt(beside_i, beside_j)}) {
+      const float beside = heightOf(cell, above_m);
+      most_m = std::max(most_m, beside);
+      least_m = std::min(least_m, beside);
     }
     if (most_m > least_m) doubtful |= 1u << n;
     height_m[n] += most_m;

@@ -81,7 +81,7 @@ PathPosts::PathPosts(const SectorObstacles& obstacles, const SectorTerrain& terr
   longest_chord_beside_m_ = sine_of_latitude < kOf75Degrees ? 0.02f : 0.1f;  // see terrain_walk.h
   const auto blocks = static_cast<std::size_t>(obstacles.posts.blocks());
   for (auto* const posts : {&range_m_, &height_m_}) posts->resize(blocks * kOfBlock);
-  for (auto* const of_blocks : {&read_for_, &raised_for_, &clutter_read_for_, &columns_})
+  for (auto* const of_blocks : {&read_for_, &raised_for_, &clutter_read_for_, &columns_, &used_})
     of_blocks->resize(blocks);
   doubtful_.resize(blocks);
 }
@@ -93,6 +93,7 @@ void PathPosts::begin(const PathToRead& path) {
   is_left_ = false;
   chord_m_ = path.distance_m / (std::floor(path.distance_m / longest_chord_m_) + 1);
   const float part = chord_m_ / longest_chord_m_;  // the deviation grows by the cube
+  clutter_m_.clear();
   clutter_posts_.clear();
   const GroundPosts& ground = obstacles_.ground;
   mirrored_m_ = static_cast<float>(
@@ -145,8 +146,10 @@ EMSCAPE_SIMD_CLONES void PathPosts::read(int block) {
   readCrossingsOfBlock({columns, rows, part.chord.corner_msl_m, terrain_.rowPosts(), terrain_.base_msl_m(),
                         part.first_m, part.length_m},
                        range_m, height_m);
+  used_[block] = kCrossings;
   if (isNear(block) || areRaised()) {
     const auto add = [&](int place, float at_m, float of_chord) {
+      used_[block] = kOfBlock;
       range_m[kCrossings + place] = at_m;
       height_m[kCrossings + place] = heightAt(part, of_chord);
     };
@@ -190,12 +193,16 @@ EMSCAPE_SIMD_CLONES void PathPosts::readClutterPosts(int block) {
     }
     count = 0;
   };
-  for (int n = 0; n < ground.clutterPosts(); ++n) {
-    const double at_m = ground.clutterPost_m(n, path_->exact_distance_m);
-    const auto here_m = static_cast<float>(at_m);
+  if (clutter_m_.empty()) {
+    for (int n = 0; n < ground.clutterPosts(); ++n) {
+      const double at_m = ground.clutterPost_m(n, path_->exact_distance_m);
+      if (isClutterAt(at_m, path_->exact_distance_m)) clutter_m_.push_back(static_cast<float>(at_m));
+    }
+  }
+  for (const float here_m : clutter_m_) {
     const bool is_before = block > 0 && !(here_m > last_m[block - 1]);
     const bool is_beyond = block + 1 < path_->blocks && here_m > last_m[block];
-    if (is_before || is_beyond || !isClutterAt(at_m, path_->exact_distance_m)) continue;
+    if (is_before || is_beyond) continue;
     if (count == kBlock) raiseAll();
     range_m[kCrossings + count] = here_m;
     height_m[kCrossings + count++] = heightAt(part, part.at(here_m));

@@ -46,7 +46,7 @@ class PathPosts {
   /// Bit i: the height of post i is an upper bound.
   unsigned doubtful(int block) const { return doubtful_[block]; }
   /// Number of the posts that a search has to visit, the first ones.
-  int used(int block) const { return areRaised() || isNear(block) ? kOfBlock : kCrossings; }
+  int used(int block) const { return used_[block]; }
 
   /// A post for clutter (GroundPosts).
   struct ClutterPost {
@@ -106,8 +106,9 @@ class PathPosts {
   // Of the blocks that were read:
   std::vector<float> range_m_, height_m_;
   std::vector<int> read_for_, raised_for_, clutter_read_for_;  ///< numbers of paths
-  std::vector<int> columns_;                                   ///< number of the posts on columns
+  std::vector<int> columns_, used_;                            ///< number of the posts on columns; of all
   std::vector<unsigned> doubtful_;
+  std::vector<float> clutter_m_;  ///< ranges of the posts for clutter, once the first block needs them
   std::vector<ClutterPost> clutter_posts_;
 };
 
