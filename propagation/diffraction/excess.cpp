@@ -1,11 +1,10 @@
-// Delta-Bullington for a column of receivers by vector instructions: lanes hold posts.
+// Delta-Bullington for a column of receivers by vector instructions.
 //
-// The first pass over the posts gives the steepest slope from the transmitter, and the slope of the line of
-// sight above which every post is clear: nu of a post falls linearly with the receiver's height. Only
-// receivers below that, or not clear of the smooth earth, are computed; the others have no loss. A single
-// receiver takes one pass. Of many below the steepest ray some are computed first: the post that one sees
-// highest is not farther from the transmitter than that of a lower one, so that those between need only the
-// posts between.
+// The first pass over the posts, in lanes, gives the steepest slope from the transmitter, and the slope of
+// the line of sight above which every post is clear: nu of a post falls linearly with the receiver's height.
+// Only receivers below that, or not clear of the smooth earth, are computed; the others have no loss. Posts
+// that are the highest for none of them are left out. Then lanes hold receivers, for one remaining post after
+// another.
 
 #include "propagation/diffraction/excess.h"
 
@@ -77,7 +76,8 @@ class LaneColumn {
  public:
   static constexpr int kArrays = 5;
 
-  /// @param memory  kArrays of at least the profile's posts, each a multiple of kLanes
+  /// @param memory  kArrays arrays
+  /// @param size    of each: a multiple of kLanes, at least the number of the profile's posts
   LaneColumn(const DiffractionExcess& excess, const ExcessColumn& column, float* memory, std::size_t size)
       : model_(excess.model),
         column_(column),
