@@ -118,6 +118,7 @@ __global__ void __launch_bounds__(kWarp* kWarps)
   }
 
   for (int m = 0; m < launch.member_count; ++m) {
+    __syncthreads();  // the block reads one member at a time: more do not fit into the cache of parameters
     const Member<kChannels>& member = launch.members[m];
     const long long first = static_cast<long long>(begin) * columns + column;
     if (member.power_is_known) {

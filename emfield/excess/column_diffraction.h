@@ -73,7 +73,7 @@ struct SeenPost {
 /// of those for a lower one. Only posts that do both, each in some measure, are kept.
 class CandidatePosts {
  public:
-  static constexpr int kMost = 224;
+  static constexpr int kMost = 512;
 
   /// The largest measures of the posts so far, in order of their ranges, seen from a receiver.
   struct Records {
@@ -101,13 +101,13 @@ class CandidatePosts {
     }
   };
 
-  EMSCAPE_HD void clear() {
-    first_ = 0;
-    end_ = 0;
+  EMSCAPE_HD void set(int n, const PathPost& post) {
+    if (n < kMost) posts_[n] = post;
   }
-  EMSCAPE_HD void add(const PathPost& post) {
-    if (end_ < kMost) posts_[end_] = post;
-    ++end_;
+  /// They are those that were set before n.
+  EMSCAPE_HD void end(int n) {
+    first_ = 0;
+    end_ = n;
   }
   /// False if there was no room for all: they are incomplete.
   EMSCAPE_HD bool areComplete() const { return end_ <= kMost; }
@@ -254,23 +254,24 @@ class Receivers {
   /// The line fitted to the terrain, and the share of the sea. Regular posts at a spacing of the elevation
   /// model are enough: its ends move by decimetres, a loss by a few thousandths of a decibel.
   EMSCAPE_NOINLINE EMSCAPE_HD void fitTrend() {
-    double v1 = 0, v2 = 0;  // as propagation::TerrainSums
+    float v1 = 0, v2 = 0;  // as propagation::TerrainSums
     float sea_m = 0, before_m = 0, before_height_m = 0;
     bool was_sea = base_msl_m_ <= 0;
+    const float base_msl_m = base_msl_m_;
     const auto add = [&](float range_m, float height_msl_m) {
-      const float length_m = range_m - before_m, height_m = height_msl_m - base_msl_m_;
+      const float length_m = range_m - before_m, height_m = height_msl_m - base_msl_m;
       const bool is_sea = height_msl_m <= 0;
-      v1 += static_cast<double>(length_m * (before_height_m + height_m));
-      v2 += static_cast<double>(
-          length_m * (height_m * (2 * range_m + before_m) + before_height_m * (range_m + 2 * before_m)));
+      v1 = fmaf(length_m, before_height_m + height_m, v1);
+      v2 = fmaf(length_m, fmaf(height_m, 2 * range_m + before_m, before_height_m * (range_m + 2 * before_m)),
+                v2);
       sea_m = fmaf(length_m, (was_sea ? 0.5f : 0) + (is_sea ? 0.5f : 0), sea_m);
       before_m = range_m;
       before_height_m = height_m;
       was_sea = is_sea;
     };
-    posts_.eachSecondRegular([&](const PathPost& post) { add(post.range_m, post.height_msl_m); });
+    posts_.eachOfSome(add);
     add(distance_m_, ground_m_ + base_msl_m_);
-    const propagation::TerrainSums sums{v1, v2};
+    const propagation::TerrainSums sums{static_cast<double>(v1), static_cast<double>(v2)};
     trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(distance_m_)));
     trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(distance_m_)));
     if (task_.model.model.sea_by_height) sea_fraction_ = sea_m / distance_m_;
@@ -310,6 +311,8 @@ class Receivers {
     constexpr bool kKeeps = kReceivers == 0;
     const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
     const float d = distance_m_, half_curvature = half_curvature_;
+    const float base_msl_m = base_msl_m_, tx_m = tx_m_;
+    int kept = 0;
     float tx, clear, plain_tx, unknown;
     bool is_whole;
     Several<kReceivers, kEarth, true> several(*this, rx_m);
@@ -319,7 +322,7 @@ class Receivers {
       unknown = base_msl_m_ - base_msl_m_ + (ground_m_ - ground_m_);
       several.clear();
       records = CandidatePosts::Records(lowest_slope);
-      if constexpr (kKeeps) candidates_.clear();
+      kept = 0;
       const auto skips = [&](float from_m, float to_m, float highest_msl_m) -> bool {
         if constexpr (kReceivers > 1) return false;  // above the candidates of the first pass
         const Bounds bounds = boundsOf(from_m, to_m, highest_msl_m, lowest_slope, clearance);
@@ -332,18 +335,19 @@ class Receivers {
       };
       is_whole = posts_.each(skips, [&](const PathPost& post) {
         unknown += post.height_msl_m - post.height_msl_m;
-        const SeenPost seen = this->seen(post);
+        const SeenPost seen(post, d, base_msl_m, tx_m, half_curvature);
         const float per_range = (d - seen.range_m) * seen.root;
         tx = fmaxf(tx, per_range * (seen.height_m * seen.root));
         clear = fmaxf(clear, per_range * fmaf(seen.height_m, seen.root, clearance));
         if constexpr (kEarth) plain_tx = fmaxf(plain_tx, per_range * (seen.plain_m * seen.root));
         const bool is_record = records.template add<kEarth>(seen);
         if constexpr (kKeeps) {
-          if (is_record) candidates_.add(post);
+          if (is_record) candidates_.set(kept++, post);
         }
         several.add(seen, half_curvature);
       });
     } while (!is_whole);
+    if constexpr (kKeeps) candidates_.end(kept);
     tx_slope_ = tx;
     clear_slope_ = clear;
     plain_tx_slope_ = plain_tx;
@@ -410,8 +414,9 @@ EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& g
   using diffraction_detail::Receivers;
   constexpr bool kOnePass = kReceivers == 1;
   const auto column_index = static_cast<std::size_t>(c);
+  const ExcessStore to = task.out.excess;
   const auto set = [&](int k, float excess_db) {
-    task.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + column_index, excess_db);
+    to.set(static_cast<std::size_t>(k) * grid.column_count + column_index, excess_db);
   };
   const int end = grid.firstLayer(segment + 1);
   int k = larger(grid.firstValid(column_index), grid.firstLayer(segment));
@@ -420,7 +425,9 @@ EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& g
   const FastInverse path = grid.coordinatesOf(task.station, column_index, segment);
   const float ground_msl_m =
       grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(task.station, task.ground, path);
-  const PathEnds ends(task.air, task.terminal, static_cast<float>(path.distance_m), ground_msl_m);
+  const AirLoss air = task.air;
+  const propagation::TerminalClutter terminal = task.terminal;
+  const PathEnds ends(air, terminal, static_cast<float>(path.distance_m), ground_msl_m);
   const auto heightOf = [&](int layer) {
     return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[smaller(layer, end - 1)])));
   };
@@ -468,7 +475,6 @@ EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& g
     }
   }
   if (ends.areFree()) {
-    const ExcessStore to = task.out.excess;
     std::size_t voxel = static_cast<std::size_t>(k) * grid.column_count + column_index;
     for (; k < end; ++k, voxel += grid.column_count) to.set(voxel, 0);
   }

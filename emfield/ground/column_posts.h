@@ -37,65 +37,61 @@ class ColumnPosts {
   template <class Skips, class Visit>
   EMSCAPE_HD bool each(const Skips& skips, const Visit& visit) {
     const int regular = ground_.lastBefore(path_.distance_m) + 1;
-    const bool is_smooth = ground_.is_smooth, with_beginnings = regular_chords_ != ~0ull;
     const Chords of_path = chords();
-    ClutterPosts more(ground_, path_.distance_m);
+    ClutterPosts clutter(ground_, path_.distance_m);
     for (int n = 0; n < of_path.count; ++n) {
       const double begin_m = n * of_path.length_m;
-      TerrainChord chord;
-      const auto addClutter = [&](double end_m) {
-        for (; more.next_m < end_m; more.advance(ground_, path_.distance_m))
-          visit(PathPost{fminf(static_cast<float>(more.next_m), farthest_m()),
-                         is_smooth ? 0 : heightAt(chord, more.next_m)});
-      };
-      const auto visitInOrder = [&](const PathPost& post) {
-        addClutter(static_cast<double>(post.range_m));
-        visit(post);
-      };
-      const double end_of_chord_m = n + 1 < of_path.count ? begin_m + of_path.length_m : HUGE_VAL;
-      if (!is_smooth) prepare(station_, ground_, path_, n, chord);
-      int first = n == 0 ? 1 : ground_.lastBefore(begin_m) + 1;
-      int end = n + 1 < of_path.count ? ground_.lastBefore(begin_m + of_path.length_m) + 1 : regular;
-      const int beginning = n > 0 && with_beginnings ? 1 : 0;
-      bool with_crossings = !isRegular(n);
-      if (with_crossings) {
-        // Posts besides the crossings: the first regular ones, or the chord's beginning.
-        const int others = n == 0 ? larger(smaller(ground_.near_count, smaller(end, 128)), 1) - 1 : 1;
-        const double* const others_m = n == 0 ? ground_.ranges_m + 1 : &begin_m;
-        const Found found =
-            eachCrossing(chord, begin_m, of_path.length_m, others_m, others, skips, visitInOrder);
-        if (found != Found::all) regular_chords_ |= bitOf(n);
-        if (found == Found::void_post) return false;
-        with_crossings = found == Found::all;
-        if (with_crossings) end = first;
+      const bool is_last = n + 1 == of_path.count;
+      const TerrainChord& chord = chordOf(n);
+      const bool with_crossings = !isRegular(n) && canCross(chord.in_raster, of_path.length_m);
+      const bool with_beginning = n > 0 && regular_chords_ != ~0ull;
+      if (!with_crossings) regular_chords_ |= bitOf(n);
+      OtherPosts others{ground_.ranges_m, ground_.has_clutter ? &clutter : nullptr};
+      others.regular = n == 0 ? 1 : ground_.lastBefore(begin_m) + 1;
+      others.end = is_last ? regular : ground_.lastBefore(begin_m + of_path.length_m) + 1;
+      if (with_crossings) others.end = n == 0 ? smaller(smaller(ground_.near_count, others.end), 128) : 0;
+      if (with_beginning && others.regular < others.end && ground_.ranges_m[others.regular] <= begin_m)
+        ++others.regular;
+      others.end_m = is_last ? HUGE_VAL : begin_m + of_path.length_m;
+      others.range_m = with_beginning ? begin_m : others.next();
+      if (!eachOf(chord, with_crossings, begin_m, of_path.length_m, others, skips, visit)) {
+        regular_chords_ |= bitOf(n);
+        return false;
       }
-      if (!with_crossings && beginning > 0 && first < end && ground_.ranges_m[first] <= begin_m) ++first;
-      EMSCAPE_UNROLL_BY(1)
-      for (int i = first - (with_crossings ? 0 : beginning); i < end; ++i) {
-        const double range_m = i < first ? begin_m : ground_.ranges_m[i];
-        visitInOrder(PathPost{fminf(static_cast<float>(range_m), farthest_m()),
-                              is_smooth ? 0 : heightAt(chord, range_m)});
-      }
-      addClutter(end_of_chord_m);
     }
     return true;
   }
 
-  /// Calls visit(PathPost) for every second regular post, in the order of their ranges.
+  /// Calls visit(range (m), height above mean sea level (m)) for some regular posts in their order: every
+  /// second one, of long paths about 200.
   template <class Visit>
-  EMSCAPE_HD void eachSecondRegular(const Visit& visit) const {
-    const int regular = ground_.lastBefore(path_.distance_m) + 1;
+  EMSCAPE_HD void eachOfSome(const Visit& visit) {
+    const int regular = ground_.lastBefore(path_.distance_m) + 1, step = larger(2, regular / 160);
     const Chords of_path = chords();
-    TerrainChord chord;
-    int n = -1;
-    EMSCAPE_UNROLL_BY(1)
-    for (int i = 1; i < regular; i += 2) {
-      const double range_m = ground_.ranges_m[i];
-      const int here = smaller(static_cast<int>(range_m / of_path.length_m), of_path.count - 1);
-      if (here != n && !ground_.is_smooth) prepare(station_, ground_, path_, here, chord);
-      n = here;
-      visit(PathPost{fminf(static_cast<float>(range_m), farthest_m()),
-                     ground_.is_smooth ? 0 : heightAt(chord, range_m)});
+    const double* const ranges_m = ground_.ranges_m;
+    const float farthest_m = this->farthest_m();
+    for (int n = 0, i = 1; n < of_path.count; ++n) {
+      const double begin_m = n * of_path.length_m;
+      const int end = n + 1 < of_path.count ? ground_.lastBefore(begin_m + of_path.length_m) + 1 : regular;
+      const TerrainChord& chord = chordOf(n);
+      const bool is_simple =
+          !ground_.is_smooth && !ground_.is_raised && chord.in_raster.corner_msl_m != nullptr;
+      const float* const corner_msl_m = chord.in_raster.corner_msl_m;
+      const int row_posts = chord.in_raster.row_posts;
+      const Parabola<float> column = chord.in_raster.column, row = chord.in_raster.row;
+      const auto from_m = static_cast<float>(begin_m), per_m = static_cast<float>(chord.in_raster.per_m);
+      EMSCAPE_UNROLL_BY(2)
+      for (; i < end; i += step) {
+        const float range_m = fminf(static_cast<float>(ranges_m[i]), farthest_m);
+        float height_msl_m = 0;
+        if (is_simple) {
+          const float part = (range_m - from_m) * per_m;
+          height_msl_m = bilinearHeight(corner_msl_m, row_posts, column.at(part), row.at(part));
+        }
+        if (!is_simple || std::isnan(height_msl_m))
+          height_msl_m = ground_.is_smooth ? 0 : heightAt(chord, ranges_m[i]);
+        visit(range_m, height_msl_m);
+      }
     }
   }
 
@@ -116,8 +112,7 @@ class ColumnPosts {
       if (before > 0) add(ground_.ranges_m[before]);
       if (before + 1 < end) add(ground_.ranges_m[before + 1]);
     };
-    for (ClutterPosts more(ground_, path_.distance_m); more.next_m < HUGE_VAL;
-         more.advance(ground_, path_.distance_m))
+    for (ClutterPosts more(ground_, path_.distance_m); more.next_m < HUGE_VAL; more.advance())
       add(more.next_m);
     if (ground_.is_smooth || regular_chords_ == ~0ull) {
       addRegular(regular);
@@ -135,35 +130,63 @@ class ColumnPosts {
     }
     if (n == 0) addRegular(smaller(ground_.near_count, regular));
     if (n != around_chord_) {
-      TerrainChord chord;
-      prepare(station_, ground_, path_, n, chord);
-      around_ = ChordCrossings(chord.in_raster);
+      around_ = ChordCrossings(chordOf(n).in_raster);
       around_chord_ = n;
     }
     const float part = fminf(static_cast<float>((static_cast<double>(range_m) - begin_m) / chord_m), 1);
     for (const LineCrossings* lines : {&around_.columns, &around_.rows}) {
       const int next = lines->countBefore(part, static_cast<int>(lines->coordinate.at(part)));
       for (int i = larger(next - 1, 0); i < smaller(next + 1, lines->count); ++i)
-        add(crossingRange_m(begin_m, chord_m, lines->part(i, lines->line(i)), path_.distance_m));
+        add(crossingRange_m(begin_m, chord_m, partOf(*lines, i < lines->before_turn, lines->line(i)),
+                            path_.distance_m));
     }
     return found;
   }
 
  private:
-  enum class Found { all, void_post, too_many };
   /// The ranges of the posts for clutter, one after another; infinite after the last one.
   struct ClutterPosts {
+    const GroundPosts& ground;
+    double path_m;
     int n = -1;
     double next_m = HUGE_VAL;
 
-    EMSCAPE_HD ClutterPosts(const GroundPosts& ground, double path_m) { advance(ground, path_m); }
-    EMSCAPE_HD void advance(const GroundPosts& ground, double path_m) {
+    EMSCAPE_HD ClutterPosts(const GroundPosts& ground_, double path_m_) : ground(ground_), path_m(path_m_) {
+      advance();
+    }
+    EMSCAPE_HD void advance() {
       for (next_m = HUGE_VAL; ++n < ground.clutterPosts();) {
         const double range_m = ground.clutterPost_m(n, path_m);
         if (!isClutterAt(range_m, path_m)) continue;
         next_m = range_m;
         return;
       }
+    }
+  };
+  /// The posts of a chord other than crossings, one after another.
+  struct OtherPosts {
+    const double* ranges_m;
+    ClutterPosts* clutter;     ///< null: none
+    int regular = 1, end = 0;  ///< of the regular posts
+    double end_m = 0;          ///< of the chord
+    double range_m = 0;        ///< of the next one, at first perhaps the chord's beginning; infinite: none
+
+    EMSCAPE_HD float range() const { return static_cast<float>(range_m); }
+    /// Leaves out the present one.
+    EMSCAPE_HD float advance() {
+      range_m = next();
+      return range();
+    }
+    EMSCAPE_HD double next() {
+      const double regular_m = regular < end ? ranges_m[regular] : HUGE_VAL;
+      if (clutter != nullptr && clutter->next_m < end_m && clutter->next_m < regular_m) return nextClutter();
+      ++regular;
+      return regular_m;
+    }
+    EMSCAPE_NOINLINE EMSCAPE_HD double nextClutter() {
+      const double here_m = clutter->next_m;
+      clutter->advance();
+      return here_m;
     }
   };
   struct Chords {
@@ -173,6 +196,7 @@ class ColumnPosts {
   /// HighestOfTiles along a chord, in lines from the chord's corner.
   class TilesAlong {
    public:
+    TilesAlong() = default;
     EMSCAPE_HD TilesAlong(const GroundPosts& ground, const float* corner_msl_m, bool by_columns) {
       if (ground.tiles.msl_m == nullptr || ground.has_clutter || ground.is_raised) return;
       const scenario::TerrainRaster& raster = ground.terrain.rasters[0];
@@ -218,13 +242,19 @@ class ColumnPosts {
     return {walk.chords(), walk.chord_m()};
   }
 
+  /// The last two that were asked for are kept.
+  EMSCAPE_HD const TerrainChord& chordOf(int n) {
+    if (!ground_.is_smooth && kept_[n & 1] != n) prepare(station_, ground_, path_, n, chord_[n & 1]);
+    kept_[n & 1] = n;
+    return chord_[n & 1];
+  }
   static EMSCAPE_HD std::uint64_t bitOf(int chord) { return 1ull << smaller(chord, 62); }
   EMSCAPE_HD bool isRegular(int chord) const { return (regular_chords_ & bitOf(chord)) != 0; }
   /// A post may be at the receivers in float.
   EMSCAPE_HD float farthest_m() const { return static_cast<float>(path_.distance_m) * (1 - 2.4e-7f); }
 
   /// Height above mean sea level (m), with the clutter where that counts; NaN over missing terrain.
-  EMSCAPE_HD float heightAt(const TerrainChord& chord, double range_m) const {
+  EMSCAPE_NOINLINE EMSCAPE_HD float heightAt(const TerrainChord& chord, double range_m) const {
     float height_msl_m = chord.in_raster.corner_msl_m != nullptr ? chord.in_raster.heightAt(range_m) : NAN;
     if (std::isnan(height_msl_m)) height_msl_m = amongRasters(ground_, chord, range_m);
     return raised(chord, range_m, height_msl_m);
@@ -250,92 +280,125 @@ class ColumnPosts {
     return cover_m > 0 ? cover_m : 0;
   }
 
-  /// The crossings of a chord and other posts, in their order: between two crossings with the lines of which
-  /// there are more, those with the others.
+  /// True if a chord's crossings are read.
+  EMSCAPE_HD bool canCross(const RasterChord& chord, double chord_m) const {
+    return chord.corner_msl_m != nullptr && ChordCrossings(chord).count() <= ground_.maxCrossings(chord_m);
+  }
+
+  /// The crossings with columns or with rows, one after another.
+  /// @tparam kStraight  of the lines of which there are more: see LineCrossings::partOfStraight()
+  template <bool kStraight>
+  struct Crossings {
+    LineCrossings lines;
+    int step;  ///< between the raster's posts of two lines
+    float inverse, bend;
+    int n = 0, line = 0;
+    float part = 2;  ///< of the chord; 2: no further one
+
+    EMSCAPE_HD Crossings(const LineCrossings& of, int step_)
+        : lines(of),
+          step(step_),
+          inverse(approximateReciprocal(of.coordinate.c[1])),
+          bend(4 * of.coordinate.c[2] * inverse) {}
+    EMSCAPE_HD void begin(int first) {
+      n = first;
+      if (n < lines.count) line = lines.line<kStraight>(n);
+      find();
+    }
+    /// As begin(n + 1).
+    EMSCAPE_HD void advance() {
+      ++n;
+      line += kStraight || n < lines.before_turn ? lines.step : n == lines.before_turn ? 0 : -lines.step;
+      find();
+    }
+    EMSCAPE_HD float partOfLine(int of_line) const {
+      if (!kStraight) return partOf(lines, n < lines.before_turn, of_line);
+      const float to = (static_cast<float>(of_line) - lines.coordinate.c[0]) * inverse, b = bend * to;
+      return fminf(fmaxf(to * (1 - b * (0.25f - b * (0.125f - b * 0.078125f))), 0), 1);
+    }
+
+   private:
+    EMSCAPE_HD void find() { part = n < lines.count ? partOfLine(line) : 2; }
+  };
+
+  /// The posts of a chord in their order.
+  /// @return false if there is a void beside a crossing
   template <class Skips, class Visit>
-  EMSCAPE_HD Found eachCrossing(const TerrainChord& chord, double begin_m, double chord_m,
-                                const double* others_m, int others, const Skips& skips,
-                                const Visit& visit) const {
-    if (chord.in_raster.corner_msl_m == nullptr) return Found::too_many;
-    const ChordCrossings crossings(chord.in_raster);
-    if (crossings.count() > ground_.maxCrossings(chord_m)) return Found::too_many;
-    const bool by_columns = crossings.columns.count >= crossings.rows.count;
-    const LineCrossings most = by_columns ? crossings.columns : crossings.rows;
-    const LineCrossings few = by_columns ? crossings.rows : crossings.columns;
-    const int row_posts = crossings.row_posts;
-    const int most_step = by_columns ? 1 : row_posts, few_step = by_columns ? row_posts : 1;
-    const float* const corner_msl_m = crossings.corner_msl_m;
+  EMSCAPE_HD bool eachOf(const TerrainChord& chord, bool with_crossings, double begin_m, double chord_m,
+                         OtherPosts& others, const Skips& skips, const Visit& visit) const {
     const auto from_m = static_cast<float>(begin_m), length_m = static_cast<float>(chord_m);
     const float farthest_m = this->farthest_m();
-    const bool is_raised = ground_.is_raised;
     const auto rangeAt = [&](float part) {
       return fminf(fmaxf(fmaf(length_m, part, from_m), 0.01f), farthest_m);
     };
-    TilesAlong tiles(ground_, corner_msl_m, by_columns);
-    int other = 0;
-    float other_m = others > 0 ? static_cast<float>(others_m[0]) : HUGE_VALF, unknown = 0;
-    const auto nextOther = [&] {
-      other_m = ++other < others ? static_cast<float>(others_m[other]) : HUGE_VALF;
-    };
-    const auto add = [&](float part, float height_msl_m) {
-      PathPost post{rangeAt(part), height_msl_m};
-      unknown += height_msl_m;
-      while (other_m <= post.range_m) {
-        visit(PathPost{fminf(other_m, farthest_m), heightAt(chord, others_m[other])});
-        nextOther();
-      }
-      if (is_raised) post.height_msl_m = raised(chord, static_cast<double>(post.range_m), height_msl_m);
-      visit(post);
-    };
-    int cell = few.first_cell;
-    float reached = 0;  // part of the chord
-    for (int n = 0; n <= most.count;) {
-      int end = n + 1;
-      if (tiles.areKnown() && n < most.count) {  // as far as to the end of a tile
-        const bool is_first = n < most.before_turn;
-        const int line = most.line(n), direction = is_first ? most.step : -most.step;
-        end = n + smaller(tiles.linesFrom(line, direction), (is_first ? most.before_turn : most.count) - n);
-        const float part = partOf(most, is_first, line + direction * (end - 1 - n));
-        const int end_cell = static_cast<int>(few.coordinate.at(part));
-        const bool turns = few.turn > reached && few.turn < part;
-        const float to_m = rangeAt(part);
-        if (!turns && skips(rangeAt(reached), to_m, tiles.highest_m(line, direction, cell, end_cell))) {
-          cell = end_cell;
-          reached = part;
-          n = end;
-          while (other_m <= to_m) nextOther();
-          continue;
-        }
-        reached = part;
-      }
-      for (; n < end; ++n) {
-        int line = 0, next_cell = few.last_cell;
-        float part = 1, across = 0;
-        if (n < most.count) {
-          line = most.line(n);
-          part = partOf(most, n < most.before_turn, line);
-          across = few.coordinate.at(part);
-          next_cell = static_cast<int>(across);
-        }
-        while (cell != next_cell) {
-          const bool rises = cell < next_cell;
-          const int few_line = rises ? cell + 1 : cell;
-          const float few_part = partOf(few, rises == (few.to_root > 0), few_line);
-          const float along = most.coordinate.at(few_part);
-          const int of_most = static_cast<int>(along);
-          const float* const near = corner_msl_m + (few_line * few_step + of_most * most_step);
-          add(few_part, lerp(near[0], near[most_step], along - static_cast<float>(of_most)));
-          cell += rises ? 1 : -1;
-        }
-        if (n == most.count) continue;
-        const float* const near = corner_msl_m + (line * most_step + next_cell * few_step);
-        add(part, lerp(near[0], near[few_step], across - static_cast<float>(next_cell)));
-      }
+    const ChordCrossings crossings(chord.in_raster);
+    const bool by_columns = crossings.columns.count >= crossings.rows.count;
+    const int row_posts = crossings.row_posts;
+    const float* const corner_msl_m = crossings.corner_msl_m;
+    Crossings<true> most(by_columns ? crossings.columns : crossings.rows, by_columns ? 1 : row_posts);
+    Crossings<false> few(by_columns ? crossings.rows : crossings.columns, by_columns ? row_posts : 1);
+    TilesAlong tiles;
+    if (with_crossings) {
+      most.begin(0);
+      few.begin(0);
+      tiles = TilesAlong(ground_, corner_msl_m, by_columns);
     }
-    for (; other < others; ++other)
-      visit(
-          PathPost{fminf(static_cast<float>(others_m[other]), farthest_m), heightAt(chord, others_m[other])});
-    return std::isnan(unknown) ? Found::void_post : Found::all;
+    const bool is_raised = ground_.is_raised;
+    float other_m = others.range(), reached = 0, unknown = 0;  // part of the chord
+    int untried = 1;  // tiles to go through, after one that is not skipped
+    do {
+      float end = 2;  // as far as to the end of a tile
+      while (tiles.areKnown() && most.n < most.lines.count) {
+        const int direction = most.lines.step;
+        const int count = smaller(tiles.linesFrom(most.line, direction), most.lines.count - most.n);
+        end = most.partOfLine(most.line + direction * (count - 1));
+        const LineCrossings& across = few.lines;
+        const int cell = static_cast<int>(across.coordinate.at(reached));
+        const int end_cell = static_cast<int>(across.coordinate.at(end));
+        const float to_m = rangeAt(end);
+        const bool is_needed =
+            (across.turn > reached && across.turn < end) ||
+            !skips(rangeAt(reached), to_m, tiles.highest_m(most.line, direction, cell, end_cell));
+        if (isForAnyLane(is_needed)) {  // threads of a warp remain together
+          const int more = smaller(count + (untried - 1) * HighestOfTiles::kCells, most.lines.count - most.n);
+          end = most.partOfLine(most.line + direction * (more - 1));
+          untried = smaller(2 * untried, 4);
+          break;
+        }
+        untried = 1;
+        reached = end;
+        end = 2;
+        most.begin(most.n + count);
+        few.begin(across.countBefore(reached, end_cell));
+        while (other_m <= to_m) other_m = others.advance();
+      }
+      EMSCAPE_UNROLL_BY(1)
+      for (;;) {
+        const bool is_few = few.part < most.part;
+        const float part = is_few ? few.part : most.part;
+        const bool is_crossing = part <= end && part < 2;
+        PathPost post{is_crossing ? rangeAt(part) : HUGE_VALF, 0};
+        if (other_m <= post.range_m) {
+          if (!is_crossing && (end < 2 || other_m == HUGE_VALF)) break;
+          post = {fminf(other_m, farthest_m), ground_.is_smooth ? 0 : heightAt(chord, others.range_m)};
+          other_m = others.advance();
+        } else {
+          const Parabola<float> coordinate = is_few ? most.lines.coordinate : few.lines.coordinate;
+          const float at = coordinate.at(part);
+          const int cell = static_cast<int>(at), across = is_few ? most.step : few.step;
+          const float* const near =
+              corner_msl_m + ((is_few ? few.line * few.step : most.line * most.step) + cell * across);
+          post.height_msl_m = lerp(near[0], near[across], at - static_cast<float>(cell));
+          unknown += post.height_msl_m;
+          if (is_raised)
+            post.height_msl_m = raised(chord, static_cast<double>(post.range_m), post.height_msl_m);
+          is_few ? few.advance() : most.advance();
+        }
+        visit(post);
+      }
+      reached = end;
+    } while (reached < 2);
+    return !std::isnan(unknown);
   }
 
   /// LineCrossings::part(), within 2e-7.
@@ -350,6 +413,8 @@ class ColumnPosts {
   const Station& station_;
   const GroundPosts& ground_;
   const FastInverse& path_;
+  TerrainChord chord_[2];
+  int kept_[2] = {-1, -1};  ///< which chords they are
   int around_chord_ = -1;
   ChordCrossings around_;             ///< of around_chord_
   std::uint64_t regular_chords_ = 0;  ///< by bitOf(); all: the profile has regular posts only

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 
+#include "base/math/simd.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "propagation/air/gases.h"
@@ -86,8 +87,8 @@ std::shared_ptr<const GasProfile> gasProfile(double frequency_hz, const Atmosphe
 
 /// Means along rays that are straight over the effective earth, from a station to points at one range.
 /// @param to_msl_m, means  `count` numbers each
-void meansAlong(const GasProfile& profile, float from_msl_m, const float* to_msl_m, int count, float sag_m,
-                float* means) {
+EMSCAPE_SIMD_CLONES void meansAlong(const GasProfile& profile, float from_msl_m, const float* to_msl_m,
+                                    int count, float sag_m, float* means) {
   // Gauss-Legendre: Abramowitz and Stegun, table 25.4, n = 16.
   constexpr float kNodes[] = {0.095012509837637f, 0.281603550779259f, 0.458016777657227f, 0.617876244402644f,
                               0.755404408355003f, 0.865631202387832f, 0.944575023073233f, 0.989400934991650f};
@@ -100,6 +101,7 @@ void meansAlong(const GasProfile& profile, float from_msl_m, const float* to_msl
   for (int n = 0; n < 16; ++n) {
     const float t = 0.5f + (n < 8 ? -0.5f : 0.5f) * kNodes[n % 8], weight = kWeights[n % 8] / 2;
     const float begin_m = from_msl_m - t * (1 - t) * sag_m - GasProfile::kLowest_m;
+    EMSCAPE_SIMD()
     for (int i = 0; i < count; ++i) {
       const float at = (begin_m + t * (to_msl_m[i] - from_msl_m)) * (1 / GasProfile::kStep_m);
       const float position = at < 0 ? 0.0f : at > last ? last : at;

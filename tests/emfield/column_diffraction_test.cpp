@@ -38,8 +38,9 @@ struct SeenField {
   ExcessGrid grid;
 
   SeenField(propagation::PropagationModel model, double side_m, double height_agl_m, double frequency_hz,
-            bool has_hole = false, FrameKind frame = FrameKind::altitude)
-      : terrain(terrainOf(has_hole)) {
+            bool has_hole = false, FrameKind frame = FrameKind::altitude,
+            std::shared_ptr<const MadeTerrain> over = nullptr)
+      : terrain(over ? over : terrainOf(has_hole)) {
     scenario = testing::emptyScenario(frame, 44.5, -71.5, {side_m, side_m, 4000}, {14, 11, 40});
     scenario::Emitter emitter = testing::plainEmitter("radar", 0);
     emitter.frequency_hz = frequency_hz;
@@ -175,20 +176,27 @@ TEST(ColumnDiffraction, PostsOfLowTilesAreOfNoAccount) {
 }
 
 TEST(ColumnDiffraction, OfMoreCandidatesThanThereIsRoomForIsTheSame) {
-  const SeenField setup(propagation::PropagationModel::diffraction, 90e3, 15, 3e9);
+  // Over a calm sea each post is the horizon of some receiver.
+  const auto sea = std::make_shared<const MadeTerrain>(
+      44.5, -71.5, 1.9, [](double east_deg, double) { return 30 + std::sin(50 * east_deg); });
+  const SeenField setup(propagation::PropagationModel::diffraction, 140e3, 15, 3e9, false,
+                        FrameKind::altitude, sea);
   const EmitterExcess excess = planned(setup);
+  const float half_curvature = std::get<propagation::DiffractionExcess>(excess.model).model.half_curvature;
   int too_many = 0;
   for (std::size_t c = 0; c < setup.columns.count(); ++c) {
     const FastInverse path = setup.grid.coordinatesOf(setup.station, c, 0);
     ColumnPosts posts(setup.station, setup.ground, path, true);
+    const auto distance_m = static_cast<float>(path.distance_m);
     diffraction_detail::CandidatePosts candidates;
     diffraction_detail::CandidatePosts::Records records(0);
-    candidates.clear();
-    const auto distance_m = static_cast<float>(path.distance_m);
+    int kept = 0;
     posts.each([](float, float, float) { return false; },
-               [&](const PathPost& post) {  // seen from the ground in a plain
-                 if (records.add<true>({post, distance_m, 0, 0, 0})) candidates.add(post);
+               [&](const PathPost& post) {
+                 if (records.add<true>({post, distance_m, 30, 15, half_curvature}))
+                   candidates.set(kept++, post);
                });
+    candidates.end(kept);
     too_many += !candidates.areComplete();
   }
   EXPECT_GT(too_many, 0);
