@@ -17,7 +17,11 @@ LoadedLibrary::LoadedLibrary(const std::vector<std::string>& files, const std::s
     }
     if (reason.empty()) reason = ::dlerror();
   }
-  throw Error(ErrorCode::other, "cannot load " + title + " (" + reason + "); " + remedy);
+  const bool is_memory_short = reason.find("failed to map segment") != std::string::npos ||
+                               reason.find("Cannot allocate memory") != std::string::npos;
+  throw Error(ErrorCode::other,
+              "cannot load " + title + " (" + reason + "); " +
+                  (is_memory_short ? "a limit on memory is reached (ulimit -v, or of a container)" : remedy));
 }
 
 void* LoadedLibrary::functionIfAny(const char* name) const {

@@ -11,6 +11,9 @@ namespace {
 constexpr int kStops[] = {SIGINT, SIGTERM, SIGHUP, SIGXCPU};
 
 StopFlag stop{false};
+/// After a signal, for what no stop flag ends: a library that waits. Also on a loaded machine much more than
+/// the program's own loops and its last writes need.
+constexpr unsigned kPatience_s = 20;
 volatile std::sig_atomic_t signal_caught = 0;
 volatile std::sig_atomic_t ends_at_once = 0;
 volatile std::sig_atomic_t ignores_further = 0;
@@ -42,10 +45,15 @@ void onSignal(int signal) {
     clock_gettime(CLOCK_MONOTONIC, &first_caught);
     signal_caught = signal;
     stop = true;
+    alarm(kPatience_s);
   } else if (ignores_further == 0 && signal != SIGXCPU && !isSameStop()) {
     std::signal(signal, SIG_DFL);
     raise(signal);
   }
+}
+
+void onAlarm(int) {
+  if (signal_caught != 0) endAtOnce(signal_caught);
 }
 
 void catchSignal(int signal) {
@@ -63,6 +71,7 @@ void catchSignal(int signal) {
 
 void handleSignals() {
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
+  std::signal(SIGALRM, onAlarm);
   for (const int signal : kStops) catchSignal(signal);
 }
 

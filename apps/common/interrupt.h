@@ -6,9 +6,9 @@
 namespace emscape::app {
 
 /// Makes the first SIGINT, SIGTERM or SIGHUP set stopFlag(); a second one, more than a second later, ends the
-/// program at once. SIGXCPU (the limit of processor time, repeated each second) sets it, too. A signal that
-/// is ignored at the start stays ignored. At SIGPIPE (a closed pipe) and SIGXFSZ (the limit of a file's size)
-/// the write fails instead.
+/// program at once, as do 20 s in which it has not ended. SIGXCPU (the limit of processor time, repeated each
+/// second) sets it, too. A signal that is ignored at the start stays ignored. At SIGPIPE (a closed pipe) and
+/// SIGXFSZ (the limit of a file's size) the write fails instead.
 void handleSignals();
 
 /// For processes that another one of this program ends: a signal to the group of both comes from both.

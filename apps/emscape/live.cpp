@@ -26,6 +26,7 @@
 #include "emscape/volume/format/file.h"
 #include "playback/frames/busy_field.h"
 #include "playback/stream/steady_time.h"
+#include "volume/format/vdb.h"
 
 namespace emscape::app {
 namespace {
@@ -223,6 +224,7 @@ int live(const LiveArguments& arguments, const GlobalOptions& global) {
                 "added; any of scenarios/ will do to begin with");
   }
   request.folder = arguments.folder;
+  if (!arguments.folder.empty()) volume::requireVdb();  // before the first file
   Event changed;
   playback::LiveBattlefield battlefield(request, [&changed] { changed.set(); });
   LiveField field(battlefield, parseBackend(global.backend), !arguments.folder.empty());
@@ -287,7 +289,8 @@ Examples:
   emscape live --cot tcp:10.0.0.9:8087 --base region.yaml
   emscape live --acmi 10.0.0.7:42674 --base region.yaml -o now --duration 3600 --json
 
-Exit status: 0, also when Ctrl-C ends it; 2 for wrong options; 3 for a faulty base or database; 1 if the address cannot be used.)");
+Exit status: 0, also when Ctrl-C ends it; 2 for wrong options; 3 for a faulty base or database; 1 if the address cannot be used, or the last
+field or the recording could not be written.)");
   auto arguments = std::make_shared<LiveArguments>();
   arguments->stream.addTo(*command, "--base", "--emitters,--emitter-database");
   command->add_option("-o,--output", arguments->folder,

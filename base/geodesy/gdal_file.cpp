@@ -26,11 +26,11 @@ void silenceHdf5() {
 void prepare() {
   static std::once_flag once;
   std::call_once(once, [] {
-    // What is read and written does not depend on the user's environment.
+    // What is read and written does not depend on the user's environment, nor on ~/.gdal/gdalrc.
     for (const auto& [option, value] :
          {std::pair("GDAL_PAM_ENABLED", "YES"), std::pair("GTIFF_POINT_GEO_IGNORE", "NO"),
           std::pair("GDAL_TIFF_ENDIANNESS", "NATIVE"), std::pair("GDAL_TIFF_INTERNAL_MASK", "NO"),
-          std::pair("GDAL_NUM_THREADS", "1"),
+          std::pair("GDAL_NUM_THREADS", "1"), std::pair("GDAL_CONFIG_FILE", "/dev/null"),
           std::pair("GDAL_GEOREF_SOURCES", "PAM,INTERNAL,TABFILE,WORLDFILE"),
           std::pair("OGR_CT_FORCE_TRADITIONAL_GIS_ORDER", "NO"),
           std::pair("OGR_ENABLE_PARTIAL_REPROJECTION", "NO"),

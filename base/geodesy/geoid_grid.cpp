@@ -66,6 +66,15 @@ struct QuietGdal {
   QuietGdal& operator=(const QuietGdal&) = delete;
 };
 
+/// GDAL's last message, which may begin with the file's name.
+std::string withoutName(const std::string& file) {
+  std::string message = CPLGetLastErrorMsg();
+  const std::size_t named = message.find(file);
+  if (named == std::string::npos) return message;
+  const std::size_t rest = message.find_first_not_of(" ,:", named + file.size());
+  return rest == std::string::npos ? "" : message.substr(rest);
+}
+
 }  // namespace
 
 GeoidGrid::GeoidGrid(const std::string& file, const GeoidArea& area) {
@@ -116,7 +125,7 @@ void GeoidGrid::read(const std::string& file, const GeoidArea& area) {
     }
     if (GDALRasterIO(GDALGetRasterBand(dataset.get(), 1), GF_Read, 0, rows - 1 - row, columns, 1, line.data(),
                      columns, 1, GDT_Float32, 0, 0) != CE_None) {
-      throw Error(ErrorCode::bad_input, SourceLocation{file}, CPLGetLastErrorMsg());
+      throw Error(ErrorCode::bad_input, SourceLocation{file}, "cannot read: " + withoutName(file));
     }
     int at = wrapped(first_column_ + turn - file_first, columns);
     for (int c = 0; c < column_count_; ++c, at = at + 1 < columns ? at + 1 : 0) {

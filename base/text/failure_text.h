@@ -20,8 +20,8 @@ inline std::string failureText(const std::exception& failure) {
   const auto* of_system = dynamic_cast<const std::system_error*>(&failure);
   if (text.find("pthread_create") != std::string::npos ||
       (of_system != nullptr && of_system->code() == std::errc::resource_unavailable_try_again))
-    return "a thread or process cannot be started: a limit on processes is reached (ulimit -u, or of a "
-           "container)";
+    return "a thread or process cannot be started: a limit on processes or memory is reached (ulimit -u, "
+           "ulimit -v, or of a container)";
   return text;
 }
 

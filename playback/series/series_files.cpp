@@ -244,7 +244,7 @@ void SeriesFiles::requireFree() const {
   }
 }
 
-void SeriesFiles::removeOld() const {
+fs::perms SeriesFiles::removeOld() const {
   std::set<std::string> ours = SeriesJournal(folder_).fileNames();
   const bool had_index = std::any_of(ours.begin(), ours.end(), [](const std::string& name) {
     return fs::path(name).extension() == ".vti" || fs::path(name).extension() == ".vtu";
@@ -265,7 +265,14 @@ void SeriesFiles::removeOld() const {
           "another folder");
     }
   }
-  for (const fs::path& file : files) fs::remove(file);
+  fs::perms permissions = fs::perms::all;
+  for (const fs::path& file : files) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(file, ignored);
+    if (fs::is_regular_file(status)) permissions &= status.permissions() | fs::perms::owner_all;
+    fs::remove(file);
+  }
+  return permissions;
 }
 
 }  // namespace emscape::playback

@@ -56,7 +56,8 @@ class SeriesFiles {
   /// that this series writes may be there: they are replaced.
   /// @throws Error (usage) if a reader of the folder would take another volume as part of this series; then
   /// nothing is removed
-  void removeOld() const;
+  /// @return permissions that all of its files had: who may read them does not change
+  std::filesystem::perms removeOld() const;
 
  private:
   /// Of the files of this and of the folder's present series, their description included.

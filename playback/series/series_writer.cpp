@@ -1,8 +1,11 @@
 #include "emscape/playback/series/series_writer.h"
 
 #include <fmt/core.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <optional>
+#include <set>
 
 #include "base/files/file_digest.h"
 #include "base/files/folder.h"
@@ -16,6 +19,7 @@
 #include "playback/series/series_files.h"
 #include "playback/series/series_journal.h"
 #include "playback/series/series_state.h"
+#include "volume/format/vdb.h"
 
 namespace emscape::playback {
 namespace {
@@ -55,6 +59,21 @@ std::string pathFrom(const fs::path& folder, const std::string& file) {
   return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
 }
 
+/// While it exists, the process makes files with these permissions at most.
+class LargestPermissions {
+ public:
+  explicit LargestPermissions(fs::perms allowed) : before_(::umask(~static_cast<mode_t>(allowed) & kAll)) {
+    ::umask(before_ | (~static_cast<mode_t>(allowed) & kAll));
+  }
+  ~LargestPermissions() { ::umask(before_); }
+  LargestPermissions(const LargestPermissions&) = delete;
+  LargestPermissions& operator=(const LargestPermissions&) = delete;
+
+ private:
+  static constexpr mode_t kAll = 0777;
+  const mode_t before_;
+};
+
 /// The work of writeSeries().
 class SeriesWriter {
  public:
@@ -76,7 +95,7 @@ class SeriesWriter {
     if (!hasSeriesState(options.folder)) {
       files_.requireFree();
     } else if (options.existing == Existing::replace) {
-      files_.removeOld();
+      permissions_.emplace(files_.removeOld());
     }
   }
 
@@ -265,6 +284,7 @@ class SeriesWriter {
   const ProgressSink& progress_;
   const FolderLock lock_;
   const SeriesFiles files_;
+  std::optional<LargestPermissions> permissions_;  ///< of a series that is replaced
   SeriesJournal journal_;
   SeriesState state_;
   std::vector<ValueRange> ranges_;  // over the steps so far, or the given range
@@ -277,6 +297,8 @@ class SeriesWriter {
 }  // namespace
 
 SeriesResult writeSeries(FieldSeries& series, const SeriesOptions& options, const ProgressSink& progress) {
+  const std::set<std::string> formats(options.formats.begin(), options.formats.end());
+  if (formats.count("vdb") + formats.count("nvdb") > 0) volume::requireVdb();  // before the first file
   return SeriesWriter(series, options, progress).run();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/parallel.h"
 #include "emscape/base/work.h"
 #include "propagation/parabolic_equation/excess.h"
 
@@ -14,6 +15,16 @@ float meanPower_db(float a_db, float b_db) {
   return -10 * std::log10((std::pow(10.0f, -a_db / 10) + std::pow(10.0f, -b_db / 10)) / 2);
 }
 
+/// Calls a function for each cell. Each piece of the cells has a copy of the function.
+template <class Function>
+void forCells(const FieldMarch& field, const Function& function) {
+  const auto heights = static_cast<std::size_t>(field.march.cells.heights);
+  parallelFor(static_cast<int>(field.cellCount() / heights), 16, [&](int begin, int end) {
+    Function own = function;
+    for (std::size_t i = std::size_t(begin) * heights; i < std::size_t(end) * heights; ++i) own(i);
+  });
+}
+
 /// Losses of a member, of the mean power of the polarisations.
 void marchMember(FieldMarch& field, const std::vector<RefractivityAlongPath>& member, float* cells_db) {
   const bool has_other = field.surfaces.size() > 1;
@@ -21,16 +32,15 @@ void marchMember(FieldMarch& field, const std::vector<RefractivityAlongPath>& me
     const WorkPart part("", 0, has_other ? 0.5 : 1);
     marchAzimuths(field.set(member, field.surfaces.front()), cells_db);
   }
-  const std::size_t count = field.cellCount();
   if (has_other) {
     const WorkPart part("", 0.5, 1);
-    std::vector<float> other_db(count);
+    std::vector<float> other_db(field.cellCount());
     marchAzimuths(field.set(member, field.surfaces.back()), other_db.data());
-    for (std::size_t i = 0; i < count; ++i) cells_db[i] = meanPower_db(cells_db[i], other_db[i]);
+    forCells(field, [&](std::size_t i) { cells_db[i] = meanPower_db(cells_db[i], other_db[i]); });
   }
-  for (std::size_t i = 0; i < count; ++i) {
+  forCells(field, [&](std::size_t i) {
     if (cells_db[i] > kPeNoField_db) cells_db[i] = kPeNoField_db;
-  }
+  });
 }
 
 void marchEnsemble(FieldMarch& field, float* excess_db) {
@@ -42,12 +52,12 @@ void marchEnsemble(FieldMarch& field, float* excess_db) {
     members.emplace_back(field.cellCount());
     marchMember(field, member, members.back().data());
   }
-  std::vector<float> losses_db(members.size());
-  for (std::size_t i = 0; i < field.cellCount(); ++i) {
+  forCells(field, [&, losses_db = std::vector<float>()](std::size_t i) mutable {
+    losses_db.resize(members.size());
     for (std::size_t m = 0; m < members.size(); ++m) losses_db[m] = members[m][i];
     const float first_db = losses_db.front();  // NaN for all members or none: they have the same ground
     excess_db[i] = std::isnan(first_db) ? NAN : ofMembers_db(losses_db, field.quantile);
-  }
+  });
 }
 
 }  // namespace

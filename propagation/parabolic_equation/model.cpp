@@ -111,6 +111,7 @@ double endBehindSteepGround(const PeOthers& others, const PePlan& plan, FieldMar
   const auto azimuths = std::size_t(plan.azimuths);
   std::vector<int> reached(azimuths, plan.cells.ranges);
   for (std::size_t a = 0; a < azimuths; ++a) {
+    checkpoint();
     const float* const ground_msl_m = march.ground_msl_m.data() + a * march.ground_steps;
     for (std::size_t i = 1; i < march.ground_steps; ++i) {
       const auto range_m = static_cast<float>(double(i) * plan.grid.range_step_m);
@@ -155,6 +156,7 @@ std::vector<RefractivityAlongPath> airOverGround(const std::vector<RefractivityA
   }
   if (std::none_of(air.begin(), air.end(), hasEvaporationDuct)) return air;
   for (std::size_t a = 0; a < std::size_t(march.azimuths); ++a) {
+    checkpoint();
     const float* const first = march.ground_msl_m.data() + a * march.ground_steps;
     std::vector<float> ground_msl_m(first, first + march.ground_steps);
     if (radials.cover) {

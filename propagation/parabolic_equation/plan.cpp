@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "propagation/parabolic_equation/air/path_air.h"
 #include "propagation/parabolic_equation/direct_ray.h"
 #include "propagation/parabolic_equation/march/march_lanes.h"
@@ -204,6 +205,7 @@ void addGroundNeeds(const PathInputs& inputs, const RadialInputs& radials, doubl
   std::vector<float> ground_msl_m(static_cast<std::size_t>(count));
   GroundNeeds ground;
   for (int i = 0; i < kAzimuths; ++i) {
+    checkpoint();
     const double part = radials.isAround() ? double(i) / kAzimuths : (i + 0.5) / kAzimuths;
     radials.ground(radials.first_azimuth_rad + part * radials.azimuth_span_rad, step_m * (count - 1), step_m,
                    count, ground_msl_m.data());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/work.h"
 #include "propagation/parabolic_equation/march/march_step.h"
 
 namespace emscape::propagation {
@@ -18,6 +19,7 @@ double percentOf(unsigned warnings, int shift) {
 double staircasePartOf(const PePlan& plan, const AzimuthMarch& march, const MarchGrid& grid) {
   double part = 0, whole = 0;
   for (int a = 0; a < plan.azimuths; ++a) {
+    checkpoint();
     const double length_m = march.rangesOf(a) * plan.cells.range_step_m;
     const int steps = std::min(int(length_m / grid.range_step_m), int(march.ground_steps) - 1);
     part += steps * staircasePart(march.ground_msl_m.data() + std::size_t(a) * march.ground_steps, steps,

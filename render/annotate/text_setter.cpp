@@ -8,8 +8,10 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/memory.h"
 #include "base/text/utf8.h"
 #include "base/threads.h"
+#include "emscape/base/log.h"
 
 namespace emscape::render {
 namespace {
@@ -23,6 +25,8 @@ constexpr const char* kLanguage = "xx";
 constexpr std::size_t kMaxLines = 4096;
 /// Pango starts so many threads for the first text of each font, and ends the program where one is refused.
 constexpr int kThreadsOfPango = 3;
+/// Of them and their tables; the threads' stacks and heaps are addresses alone.
+constexpr std::size_t kFonts_bytes = std::size_t{96} << 20;
 
 /// A line in a font. Fonts and lines of Pango are for one thread at a time: `mutex` is held while one is
 /// used.
@@ -52,6 +56,7 @@ class TextSetter {
     const auto added = lines_.emplace(std::move(key), std::move(layout)).first;
     PangoLayoutLine* const line = pango_layout_get_line_readonly(added->second.get(), 0);
     fonts_used_.emplace(size_px, weight);
+    if (pango_layout_get_unknown_glyphs_count(added->second.get()) > 0) warnOfBoxes(characters);
     return line;
   }
 
@@ -59,7 +64,7 @@ class TextSetter {
   using LayoutPtr = std::unique_ptr<PangoLayout, void (*)(void*)>;
 
   TextSetter()
-      : fonts_((requireThreads(kThreadsOfPango), pango_cairo_font_map_new_for_font_type(CAIRO_FONT_TYPE_FT)),
+      : fonts_((requireForFonts(), pango_cairo_font_map_new_for_font_type(CAIRO_FONT_TYPE_FT)),
                g_object_unref),
         context_(pango_font_map_create_context(fonts_.get()), g_object_unref),
         font_(pango_font_description_from_string(kFamilies), pango_font_description_free) {
@@ -74,6 +79,21 @@ class TextSetter {
     pango_context_set_language(context_.get(), pango_language_from_string(kLanguage));
   }
 
+  /// What Pango and fontconfig, which wait or end the program without it, need for the first text.
+  static void requireForFonts() {
+    requireMemory({"the fonts of a picture", kFonts_bytes, "a higher limit is needed (ulimit -v)"}, {});
+    requireThreads(kThreadsOfPango);
+  }
+
+  /// Once: further texts lack the same font.
+  void warnOfBoxes(const std::string& text) {
+    if (std::exchange(has_warned_, true)) return;
+    logWarning("characters of '" + text +
+               "' and perhaps others are drawn as empty boxes: no font that is installed has them; the "
+               "packages fonts-dejavu-core (Latin, Greek, Cyrillic) and fonts-noto (others) have");
+  }
+
+  bool has_warned_ = false;
   std::unique_ptr<PangoFontMap, void (*)(void*)> fonts_;
   std::unique_ptr<PangoContext, void (*)(void*)> context_;
   std::unique_ptr<PangoFontDescription, void (*)(PangoFontDescription*)> font_;

@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "tests/apps/program.h"
+#include "tests/support/sanitizers.h"
 
 namespace emscape::test {
 namespace {
@@ -186,9 +187,7 @@ TEST(InfoOfRefractivity, RefusesAPlotOfOtherFiles) {
 }
 
 TEST(Info, RefusesAVolumeThatDoesNotFitBeforeItReadsItsValues) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
-#endif
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
   const TemporaryFolder folder;
   const std::string extent = "\"0 1023 0 1023 0 1023\"";
   const std::string file = folder.write(

@@ -5,10 +5,13 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
 
 #include "tests/apps/program.h"
+#include "tests/support/sanitizers.h"
 
 namespace emscape::test {
 namespace {
@@ -163,9 +166,7 @@ TEST_F(Outputs, BeyondTheLimitOfAFilesSizeAreAnErrorWithoutRemains) {
 }
 
 TEST_F(Outputs, OfMorePixelsThanTheMemoryHoldsAreRefusedAtOnce) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
-#endif
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
   const ProgramResult result =
       run({"render", quick_, "--times", "0", "-o", folder_ / "x.png", "--size", "20000x20000"},
           "ulimit -v 3000000;");
@@ -257,9 +258,7 @@ TEST(Results, OfTallMapsHaveAPictureThatCanBeDrawn) {
 }
 
 TEST(Results, OfPlotsBeyondTheMemoryAreRefusedBeforeTheWork) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
-#endif
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
   const TemporaryFolder folder;
   EXPECT_THAT(errorOfRun({"profile", quick(), "--emitter", "radar", "--to", "52.05,5.05,100", "--plot",
                           folder / "a.png", "--size", "32767x32767"},
@@ -281,6 +280,55 @@ TEST(Limits, APictureWithoutThreadsIsAnErrorThatNamesTheLimit) {
   ASSERT_TRUE(WIFEXITED(status));
   EXPECT_EQ(WEXITSTATUS(status), kOther);
   EXPECT_THAT(readFile(folder / "err"), HasSubstr("ulimit -u"));
+  EXPECT_FALSE(fs::exists(folder / "a.png"));
+}
+
+TEST(Limits, ALibraryThatTheMemoryDoesNotHoldIsAnErrorThatNamesTheLimit) {
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
+  const TemporaryFolder folder;
+  EXPECT_THAT(
+      errorOfRun({"coverage", quick(), "-o", folder / "o", "--cell", "1000"}, kOther, "ulimit -v 110000;"),
+      testing::AllOf(HasSubstr("cannot load the library GDAL"), HasSubstr("ulimit -v"),
+                     Not(HasSubstr("install"))));
+}
+
+TEST_F(Outputs, ThatReplaceAPrivateSeriesArePrivate) {
+  const std::string out = folder_ / "s";
+  runWell({"simulate", quick_, "-o", out, "--times", "0:1:1", "-q"}, "umask 077;");
+  runWell({"simulate", quick_, "-o", out, "--times", "0:1:1", "-q", "--force"}, "umask 022;");
+  for (const fs::directory_entry& entry : fs::directory_iterator(out))
+    EXPECT_EQ(entry.status().permissions(), fs::perms::owner_read | fs::perms::owner_write) << entry;
+  fs::remove_all(out);
+  runWell({"simulate", quick_, "-o", out, "--times", "0", "-q", "--force"}, "umask 022;");
+  EXPECT_EQ(fs::status(out + "/series.json").permissions() & fs::perms::others_read, fs::perms::others_read);
+}
+
+TEST(Texts, ThatNoFontHasAreToldOnce) {
+  const TemporaryFolder folder;
+  const std::string none = folder.write("fonts.conf", "<fontconfig><dir>/none</dir></fontconfig>");
+  const ProgramResult result =
+      runWell({"render", quick(), "--times", "0", "-o", folder / "a.png", "--size", "320x240"},
+              "export FONTCONFIG_FILE=" + none + ";");
+  const std::string warning = "are drawn as empty boxes";
+  EXPECT_THAT(result.err, HasSubstr("fonts-dejavu-core"));
+  EXPECT_NE(result.err.find(warning), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find(warning), result.err.rfind(warning));
+  EXPECT_THAT(runWell({"render", quick(), "--times", "0", "-o", folder / "b.png", "--size", "320x240"}).err,
+              Not(HasSubstr(warning)));
+}
+
+// fontconfig waits for its configuration without end.
+TEST(Signals, SLOW_EndAProgramThatWaitsWithinALibrary) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "fonts.conf";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  RunningProgram program({"render", quick(), "--times", "0", "-o", folder / "a.png"},
+                         "export FONTCONFIG_FILE=" + pipe + ";");
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  program.signal(SIGTERM);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.status, 128 + SIGTERM);
+  EXPECT_THAT(result.err, HasSubstr("stopped by signal 15"));
   EXPECT_FALSE(fs::exists(folder / "a.png"));
 }
 

@@ -69,12 +69,13 @@ measures:
   expectSameBytes({"study", study, "-o", "OUT/study"});
 }
 
-TEST(SameBytes, DoNotDependOnVariablesOfGdal) {
-  const TemporaryFolder folder;
-  const auto filesWith = [&](const std::string& name, const std::string& variables) {
+/// What makes GDAL write other bytes does not, given in some way.
+/// @param other  shell commands before the program
+void expectSameMaps(const TemporaryFolder& folder, const std::string& other) {
+  const auto filesWith = [&](const std::string& name, const std::string& commands) {
     runWell({"coverage", quick(), "-o", folder / name, "--cell", "1000", "--products", "covered,value",
              "--times", "0", "--format", "cog,gpkg"},
-            variables);
+            commands);
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder / (name + "/maps")))
       files[entry.path().filename().string()] = readFile(entry.path());
@@ -82,12 +83,28 @@ TEST(SameBytes, DoNotDependOnVariablesOfGdal) {
   };
   const auto usual = filesWith("usual", "");
   EXPECT_EQ(usual.size(), 4u) << "with the labels of the index";
-  EXPECT_TRUE(
-      usual ==
-      filesWith("other",
-                "export GDAL_PAM_ENABLED=NO GTIFF_POINT_GEO_IGNORE=YES GDAL_TIFF_ENDIANNESS=BIG "
-                "GDAL_NUM_THREADS=ALL_CPUS GDAL_TIFF_INTERNAL_MASK=YES OGR_SQLITE_JOURNAL=WAL "
-                "OGR_SQLITE_PRAGMA=journal_mode=WAL GPKG_ADD_DEFINITION_12_063=YES GDAL_SKIP=GTiff;"));
+  EXPECT_TRUE(usual == filesWith("other", other));
+}
+
+TEST(SameBytes, DoNotDependOnVariablesOfGdal) {
+  const TemporaryFolder folder;
+  expectSameMaps(folder,
+                 "export GDAL_PAM_ENABLED=NO GTIFF_POINT_GEO_IGNORE=YES GDAL_TIFF_ENDIANNESS=BIG "
+                 "GDAL_NUM_THREADS=ALL_CPUS GDAL_TIFF_INTERNAL_MASK=YES OGR_SQLITE_JOURNAL=WAL "
+                 "OGR_SQLITE_PRAGMA=journal_mode=WAL GPKG_ADD_DEFINITION_12_063=YES GDAL_SKIP=GTiff;");
+}
+
+TEST(SameBytes, DoNotDependOnGdalsFileOfOptions) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "home/.gdal");
+  const std::string log = folder / "gdal.log";
+  folder.write(
+      "home/.gdal/gdalrc",
+      "[configoptions]\nOGR_SQLITE_JOURNAL=WAL\nGDAL_PAM_ENABLED=NO\nGPKG_ADD_DEFINITION_12_063=YES\n"
+      "CPL_DEBUG=ON\nCPL_LOG=" +
+          log + "\n");
+  expectSameMaps(folder, "export HOME=" + (folder / "home") + ";");
+  EXPECT_FALSE(std::filesystem::exists(log));
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.h"
+#include "tests/support/sanitizers.h"
+#include "tests/support/without_proc.h"
 
 namespace emscape::test {
 namespace {
@@ -352,6 +354,18 @@ TEST(Study, DoesNotReplaceFilesOfTheStudy) {
   std::filesystem::remove(folder / "out/report.html");
   compute({"study", file, "-o", folder / "out"});
   compute({"study", file, "-o", folder / "out", "--merge"});
+}
+
+TEST(StudyWithoutProc, NamesARemedy) {
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers need /proc";
+  const TemporaryFolder folder;
+  const std::string program =
+      besideThisProgram("emscape") + " study " + study(folder) + " -q -o " + (folder / "out");
+  const std::string many = withoutProc(program + " --jobs 2");
+  if (many.empty()) GTEST_SKIP() << "/proc cannot be hidden";
+  EXPECT_EQ(WEXITSTATUS(std::system((many + " 2>" + (folder / "err")).c_str())), 1);
+  EXPECT_THAT(readFile(folder / "err"), HasSubstr("--jobs 1 needs no /proc"));
+  EXPECT_EQ(std::system((withoutProc(program + " --jobs 1 --resume") + " >/dev/null").c_str()), 0);
 }
 
 }  // namespace

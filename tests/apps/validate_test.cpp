@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.h"
+#include "tests/support/sanitizers.h"
 
 namespace emscape::test {
 namespace {
@@ -72,9 +73,7 @@ TEST_F(Validate, EstimatesTimeByVoxelsModelsAndThreads) {
 }
 
 TEST_F(Validate, RefusesAFieldThatDoesNotFitIntoTheMemory) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
-#endif
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
   const ProgramResult result =
       run({"validate", shippedScenario("quick.yaml"), "--set", "region.dims=[512, 512, 256]"},
           "ulimit -v 1500000;");

@@ -76,6 +76,15 @@ TEST(GeoidGrid, RefusesOtherRasters) {
               testing::HasSubstr("not a global geoid grid (360 n x (180 n + 1) posts)"));
 }
 
+TEST(GeoidGrid, AReadErrorNamesTheFileOnce) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "cut.pgm", name = "cut.pgm";
+  test::writeFile(file, pgm().substr(0, 60000));
+  const std::string error = test::errorOf([&] { const GeoidGrid grid(file); }, ErrorCode::bad_input);
+  EXPECT_THAT(error, testing::HasSubstr("cut.pgm: cannot read: "));
+  EXPECT_EQ(error.find(name), error.rfind(name)) << error;
+}
+
 /// NGA's test output for EGM2008 (OUTPUT.DAT).
 TEST(GeoidGrid, Egm2008HasNgasUndulations) {
   std::optional<GeoidGrid> egm2008;

@@ -11,6 +11,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "tests/support/files.h"
+#include "tests/support/sanitizers.h"
 
 namespace emscape::emfield::test {
 namespace {
@@ -75,7 +76,9 @@ TEST_P(AbandonedField, EndsWithinATenthOfASecond) {
     }
     RecordProperty("abandoned_ms_after_" + std::to_string(static_cast<int>(after_ms)),
                    std::to_string(best_ms));
-    EXPECT_LT(best_ms, kBound_ms) << "stopped after " << after_ms << " ms";
+    if (!emscape::test::kIsSanitized) {
+      EXPECT_LT(best_ms, kBound_ms) << "stopped after " << after_ms << " ms";
+    }
   }
 }
 
@@ -137,9 +140,9 @@ TEST(Work, ReportsItsPartsAndIsStoppedAtATime) {
   }
   EXPECT_DOUBLE_EQ(work.progress().fraction, 0.5);
   EXPECT_EQ(work.progress().part, "");
-  work.stopAt(Clock::now() + std::chrono::milliseconds(20));
+  work.stopAt(Clock::now() + std::chrono::hours(1));
   EXPECT_NO_THROW(checkpoint());
-  std::this_thread::sleep_for(std::chrono::milliseconds(25));
+  work.stopAt(Clock::now());
   EXPECT_THROW(checkpoint(), Stopped);
   work.begin("another");
   EXPECT_NO_THROW(checkpoint());

@@ -63,7 +63,7 @@ TEST(Png, IsNotEncodedToItsEndOnceTheWorkIsStopped) {
   std::uint32_t random = 1;
   for (std::uint8_t& byte : large.rgba)
     byte = static_cast<std::uint8_t>((random = random * 1664525 + 1013904223) >> 24);
-  EXPECT_LT(test::stoppedWithin_ms([&] { writePng(file, large); }, 50), 1000);
+  test::expectStopsWithinASecond([&] { writePng(file, large); }, 50);
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 

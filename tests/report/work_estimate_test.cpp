@@ -16,6 +16,7 @@
 #include "propagation/registry/model_info.h"
 #include "report/runs/work_report.h"
 #include "tests/support/files.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace emscape::report {
@@ -206,6 +207,7 @@ void expectWithinFactor5(unsigned first_seed, int count, double longest_s) {
       const double factor = std::max(estimate_s, kShort_s) / std::max(needed_s, kShort_s);
       const std::string ends =
           text.substr(0, 3000) + " ... " + text.substr(text.size() - std::min<std::size_t>(text.size(), 300));
+      if (test::kIsSanitized) continue;
       beyond += factor < 1 / 5.0 || factor > 5;
       EXPECT_GT(factor, 1 / kMost) << seed << ": " << estimate_s << " s estimated, " << needed_s
                                    << " s needed\n"
@@ -224,7 +226,7 @@ TEST(WorkEstimate, IsWithinAFactorOf5OfDrawnScenarios) {
   expectWithinFactor5(1, 10, 0.2);
 }
 
-TEST(WorkEstimate, SLOW_IsWithinAFactorOf5OfManyDrawnScenarios) {
+TEST(WorkEstimate, SLOW_IsWithinAFactorOf5For19Of20DrawnScenariosAnd7ForAll) {
   expectWithinFactor5(1000, 60, 5);
 }
 

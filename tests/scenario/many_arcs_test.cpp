@@ -55,7 +55,7 @@ TEST(SweptAntenna, OfManyTiltsIsStoppedWithinAnElevation) {
   ScanSweep sweep;
   for (int n = 0; n < 1000; ++n) sweep.arcs.push_back({-45, 90, 0.05 * n - 25, 1e-3, 1});
   for (const SweptPattern pattern : {SweptPattern::mean, SweptPattern::largest})
-    EXPECT_LT(emscape::test::stoppedWithin_ms([&] { sweptAntenna(*antenna, sweep, pattern); }, 30), 1000);
+    emscape::test::expectStopsWithinASecond([&] { sweptAntenna(*antenna, sweep, pattern); }, 30);
 }
 
 TEST(SweptAntenna, OfManyArcsEqualsThatOfItsParts) {

@@ -1,6 +1,8 @@
 /// Stopping of work in the middle.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -9,6 +11,7 @@
 #include <thread>
 
 #include "emscape/base/work.h"
+#include "tests/support/sanitizers.h"
 
 namespace emscape::test {
 
@@ -40,6 +43,15 @@ inline double stoppedWithin_ms(const std::function<void()>& work, double after_m
     thread.join();
   }
   return best_ms;
+}
+
+/// Expects that some work, stopped some time after its begin, ends within the second that
+/// docs/command-line.md promises.
+inline void expectStopsWithinASecond(const std::function<void()>& work, double after_ms) {
+  const double ends_ms = stoppedWithin_ms(work, after_ms);
+  if (!kIsSanitized) {
+    EXPECT_LT(ends_ms, 1000);
+  }
 }
 
 }  // namespace emscape::test

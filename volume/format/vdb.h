@@ -23,6 +23,9 @@
 
 namespace emscape::volume {
 
+/// Loads OpenVDB, which is else loaded at the first use. @throws Error if it cannot be loaded
+void requireVdb();
+
 /// Writes one grid for each volume. @throws Error; an earlier file of that name is then unchanged
 void writeVdb(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/loaded_library.h"
+#include "base/memory.h"
 #include "emscape/base/error.h"
 #include "volume/format/vdb.h"
 #include "volume/format/vdb_functions.h"
@@ -46,13 +47,17 @@ void requireThreads() {
   if (!failed) return;
   throw Error(ErrorCode::other,
               fmt::format("OpenVDB, which .vdb and .nvdb files need, starts {} threads, of which {} can be "
-                          "started ({}): a limit on processes is reached (ulimit -u, or of a container); the "
+                          "started ({}): a limit on processes or memory is reached (ulimit -u, ulimit -v, or "
+                          "of a container); the "
                           "formats vti and raw do without",
                           kThreads, threads.size(), failed.message()));
 }
 
 const VdbFunctions& vdbFunctions() {
   static const VdbFunctions kFunctions = [] {
+    requireMemory({"OpenVDB's library for .vdb and .nvdb files", std::size_t{96} << 20,
+                   "the formats vti and raw do without"},
+                  {});
     requireThreads();
     const LoadedLibrary library({"emscape_vdb.so"}, "emscape_vdb.so, which .vdb and .nvdb files need",
                                 "it is in ../lib/emscape beside the program's folder and needs the package "
@@ -65,6 +70,10 @@ const VdbFunctions& vdbFunctions() {
 }
 
 }  // namespace
+
+void requireVdb() {
+  vdbFunctions();
+}
 
 DenseVolume readVdb(const std::filesystem::path& path, const std::string& grid_name) {
   return vdbFunctions().read(path, grid_name);

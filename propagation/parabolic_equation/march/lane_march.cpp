@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/work.h"
 #include "propagation/parabolic_equation/march/march_block_tables.h"
 
 namespace emscape::propagation {
@@ -59,6 +60,7 @@ LaneMarchPlan laneMarchPlan(const AzimuthMarch& march) {
   plan.march = &march;
   plan.input = blockInput(march, kMaxLaneIntervals);
   for (std::size_t i = 0; i < plan.input.tasks.size(); ++i) {
+    checkpoint();
     plan.tables.push_back(tablesOf(plan.input, plan.input.tasks[i], plan.input.intervals[i]));
   }
   return plan;
@@ -88,7 +90,10 @@ void LaneMarch::planGround() {
   here.ground_msl_m = plan_.march->ground_msl_m.data() + std::size_t(first_) * here.ground_steps;
   here.states = states_.data();
   planned_.resize(std::size_t(count_) * std::size_t(here.end_step));
-  for (int l = 0; l < count_; ++l) planSteps(here, intervals(), planned_.data(), l);
+  for (int l = 0; l < count_; ++l) {
+    checkpoint();
+    planSteps(here, intervals(), planned_.data(), l);
+  }
 }
 
 const PlannedStep& LaneMarch::planned(int l) const {

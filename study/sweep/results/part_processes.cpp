@@ -32,12 +32,13 @@ constexpr int kMaxDeaths = 5;
 constexpr int kPoll_ms = 200;
 
 [[noreturn]] void failStarting(int cause) {
-  throw Error(ErrorCode::other,
-              "a process for a part cannot be started: " + std::generic_category().message(cause) +
-                  (cause == EAGAIN                      ? " (ulimit -u, or a limit of a container)"
-                   : cause == EMFILE || cause == ENFILE ? " (ulimit -n)"
-                                                        : "") +
-                  "; fewer --jobs need less");
+  throw Error(
+      ErrorCode::other,
+      "a process for a part cannot be started: " + std::generic_category().message(cause) +
+          (cause == EAGAIN                      ? " (ulimit -u, or a limit of a container)"
+           : cause == EMFILE || cause == ENFILE ? " (ulimit -n)"
+                                                : "") +
+          (cause == ENOENT ? ": /proc/self/exe; --jobs 1 needs no /proc" : "; fewer --jobs need less"));
 }
 
 /// A process that computes parts one after another.

@@ -31,7 +31,7 @@ TEST(Plot, IsStoppedBetweenItsParts) {
       for (int n = 0; n < 2000; ++n) canvas.rectangle({0, 0, 4000, 3000}, kPlotGrid);
     });
   };
-  EXPECT_LT(test::stoppedWithin_ms(draw, 100), 1000);
+  test::expectStopsWithinASecond(draw, 100);
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
