@@ -116,7 +116,7 @@ Description describeScenario(const std::string& file) {
                         {"antenna", emitter.antenna->description},
                         {"gain_dbi", emitter.antenna->gain_dbi},
                         {"propagation", toString(emitter.propagation.model)}});
-    if (emitter.waveform) emitters.back()["waveform"] = report::waveformJson(emitter);
+    if (emitter.waveform) emitters.back()["waveform"] = report::waveformJson(*scenario, emitter);
   }
   Json platforms = Json::array();
   for (const scenario::Platform& platform : scenario->platforms) {

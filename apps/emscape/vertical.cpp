@@ -151,8 +151,8 @@ void addVertical(CLI::App& app, const GlobalOptions& global, Action& action) {
       "vertical", "Vertical coverage of an emitter: a quantity over range and height at given azimuths");
   command->fallthrough();
   command->footer(R"(
-Each value is that of `emscape profile` at its point, with the terrain below and the jammers that are active. Radars look at
-the target (radar_look: target). The line is where the threshold is reached. With --blake a smooth earth replaces the
+Each value is that of `emscape profile` at its point, with the terrain below and the jammers that are active (by
+parabolic_equation the mean over a cell, over mountains within some dB of it). Radars look at the target (radar_look: target). The line is where the threshold is reached. With --blake a smooth earth replaces the
 terrain, at the height of the ground below the emitter: a range-height-angle chart, over the slant range, with rays of constant
 elevation and the line that free space would have.
 

@@ -75,7 +75,15 @@ std::string clutterText(const scenario::Scenario& scenario) {
     is_same = is_same && of_emitter == first;
     text += fmt::format("{}'{}': {}", text.empty() ? "" : "; ", emitter.name, of_emitter);
   }
-  return text.empty() ? "none" : is_same ? first : text;
+  if (text.empty()) return "none";
+  if (is_same) text = first;
+  std::string radars;
+  for (const scenario::Emitter& emitter : scenario.emitters) {
+    if (emitter.enabled && emitter.clutter)
+      radars += fmt::format("{}'{}'", radars.empty() ? "" : ", ", emitter.name);
+  }
+  if (radars.empty()) return text;
+  return text + (text == "none" ? " along the paths" : "") + "; radars with echoes of clutter: " + radars;
 }
 
 std::vector<std::string> clutterWarnings(const scenario::Scenario& scenario,
@@ -98,6 +106,12 @@ std::vector<std::string> clutterWarnings(const scenario::Scenario& scenario,
     warn(fmt::format(
         "'terminal_clutter' of 'ground' is not used: the frequency {:g} GHz is outside {:g}..{:g} GHz",
         emitter.frequency_hz / 1e9, propagation::kP2108Frequency.min, propagation::kP2108Frequency.max));
+  } else if (scenario.ground.kind == propagation::GroundKind::sea ||
+             scenario.ground.kind == propagation::GroundKind::fresh_water) {
+    warn(fmt::format(
+        "P.2108-1 is for towns and suburbs, but the 'kind' of 'ground' is {}: its loss at ends up "
+        "to {:g} m above the water sets what is covered there",
+        toString(scenario.ground.kind), scenario.ground.terminal_clutter_below_m));
   }
   return warnings;
 }

@@ -17,7 +17,8 @@ bool hasClutter(const propagation::ModelSettings& settings, const scenario::Terr
 
 /// For the line "clutter: ..." of reports; "none" without any.
 std::string clutterText(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
-/// The same for all emitters of a scenario, by name where they differ.
+/// The same for all emitters of a scenario, by name where they differ, and the radars that receive echoes of
+/// clutter, which is something else.
 std::string clutterText(const scenario::Scenario& scenario);
 
 /// Warnings of keys of clutter that have no effect on an emitter, and of models that ignore the terrain.

@@ -9,6 +9,8 @@
 #include "emfield/excess/clutter_text.h"
 #include "emfield/excess/elevation_cut.h"
 #include "emfield/excess/emitter_excess.h"
+#include "emfield/geometry/clutter_map.h"
+#include "emfield/geometry/clutter_reach.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "propagation/clear_air/climate.h"
@@ -169,6 +171,44 @@ std::vector<std::string> smoothSurfaceWarnings(const Scenario& scenario, const E
       "level; the lowest ground is at {3:.0f} m: points below the surface, as of a sea below a hill, have no "
       "field of their own; 'ground: {{surface_msl_m: {3:.0f}}}' sets the surface",
       emitter.name, model.name, surface_m, lowest_m)};
+}
+
+std::vector<std::string> laterTripWarnings(const Scenario& scenario, const Emitter& radar,
+                                           const Station& station) {
+  constexpr double kWorthSaying = 1.05;
+  if (!hasClutterMap(radar) || !radar.waveform) return {};
+  const double horizon_m =
+      std::sqrt(2 * station.effective_earth_radius_m * std::max(station.height_msl_m, 0.0));
+  const double repeat_m = radar.waveform->unambiguousRange_m();
+  const double from_m = std::max(clutterReach_m(scenario.region, station), repeat_m);
+  if (!(horizon_m > kWorthSaying * from_m)) return {};
+  return {fmt::format(
+      "emitter '{}': surfaces between {:.0f} km and its horizon at {:.0f} km are beyond the region and echo "
+      "in the time of later pulses (unambiguous range {:.0f} km): that clutter is left out; a larger region "
+      "includes it",
+      radar.name, from_m / 1000, horizon_m / 1000, repeat_m / 1000)};
+}
+
+std::vector<std::string> laterTripWarnings(const Scenario& scenario, const Emitter& radar,
+                                           const scenario::Terrain* terrain) {
+  if (!hasClutterMap(radar) || !radar.waveform) return {};
+  const auto heightOf_m = [&](const scenario::TrackPoint& point) {
+    const scenario::SitePosition& site = point.position;
+    if (!site.height_agl_m) return site.height_msl_m ? *site.height_msl_m : *site.height_ellipsoid_m;
+    const float ground_m =
+        terrain != nullptr ? terrain->heightMsl_m(site.latitude_deg, site.longitude_deg) : 0;
+    return *site.height_agl_m + (std::isnan(ground_m) ? 0 : static_cast<double>(ground_m));
+  };
+  const std::vector<scenario::TrackPoint>& track =
+      scenario.platforms[static_cast<std::size_t>(radar.platform)].track;
+  const auto highest = std::max_element(track.begin(), track.end(), [&](const auto& a, const auto& b) {
+    return heightOf_m(a) < heightOf_m(b);
+  });
+  const double height_m = heightOf_m(*highest);
+  return laterTripWarnings(
+      scenario, radar,
+      makeStation({highest->position.latitude_deg, highest->position.longitude_deg, height_m}, height_m,
+                  scenario.atmosphere));
 }
 
 double partAtSeaLevel(const std::vector<float>& heights_m) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "emfield/columns/station.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "propagation/inputs.h"
 
@@ -45,6 +46,14 @@ std::vector<std::string> seaWarnings(const scenario::Scenario& scenario, const s
 std::vector<std::string> smoothSurfaceWarnings(const scenario::Scenario& scenario,
                                                const scenario::Emitter& emitter,
                                                const scenario::Terrain& terrain);
+
+/// A warning if a radar sees surfaces beyond the region whose echoes of later trips arrive with those inside:
+/// their clutter is left out.
+std::vector<std::string> laterTripWarnings(const scenario::Scenario& scenario, const scenario::Emitter& radar,
+                                           const Station& station);
+/// The same at the highest place of its platform. @param terrain  may be null
+std::vector<std::string> laterTripWarnings(const scenario::Scenario& scenario, const scenario::Emitter& radar,
+                                           const scenario::Terrain* terrain);
 
 /// Part of heights (m above mean sea level) of at most 0.5 m; 0 without heights.
 double partAtSeaLevel(const std::vector<float>& heights_m);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "emfield/excess/emitter_excess.h"
+#include "emfield/geometry/clutter_reach.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 #include "propagation/air/gases.h"
@@ -15,15 +16,6 @@ namespace {
 
 constexpr int kMinAzimuths = 90, kMaxAzimuths = 1440, kMaxRanges = 2048;
 
-/// Upper bound of the distance from the radar to the region's farthest point.
-double reach_m(const scenario::Region& region, const Station& station) {
-  const Vec3d middle_m = {
-      0, 0,
-      region.size_m.z / 2 + (region.origin.kind == FrameKind::altitude ? region.origin.height_msl_m : 0)};
-  return length(toEcef(GeoFrame(region.origin).toGeodetic(middle_m)) - station.ecef_m) +
-         length(region.size_m) / 2;
-}
-
 int azimuthsOf(const scenario::Emitter& radar) {
   return std::clamp(static_cast<int>(std::ceil(720 / radar.antenna->beamwidth_az_deg)), kMinAzimuths,
                     kMaxAzimuths);
@@ -31,7 +23,7 @@ int azimuthsOf(const scenario::Emitter& radar) {
 
 ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emitter& radar,
                         const Station& station, const propagation::PathExtent* extent) {
-  const double reach = reach_m(scenario.region, station), cell_m = radar.clutter->range_cell_m;
+  const double reach = clutterReach_m(scenario.region, station), cell_m = radar.clutter->range_cell_m;
   int steps = ClutterGrid::kMaxSteps;
   while (steps > 1 && cell_m / steps < reach / kMaxRanges) steps -= 2;
   const double step_m = std::max(cell_m / steps, reach / kMaxRanges);
@@ -48,7 +40,9 @@ ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emit
   grid.steps_of_cell = steps;
   grid.part_of_step = steps > 1 ? 1 : static_cast<float>(cell_m / step_m);
   const double repeat_m = radar.waveform ? radar.waveform->unambiguousRange_m() : 0;
-  if (repeat_m > 2 * std::max(cell_m, step_m) && repeat_m < reach) {
+  if (repeat_m > 0 && repeat_m < reach) {
+    // Range cells that are longer hold each surface once, not in several trips.
+    grid.part_of_step *= static_cast<float>(std::min(1.0, repeat_m / cell_m));
     grid.trips = {static_cast<float>(repeat_m), static_cast<int>(std::ceil(reach / repeat_m)),
                   static_cast<float>(reach)};
   }
@@ -56,6 +50,14 @@ ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emit
 }
 
 }  // namespace
+
+double clutterReach_m(const scenario::Region& region, const Station& station) {
+  const Vec3d middle_m = {
+      0, 0,
+      region.size_m.z / 2 + (region.origin.kind == FrameKind::altitude ? region.origin.height_msl_m : 0)};
+  return length(toEcef(GeoFrame(region.origin).toGeodetic(middle_m)) - station.ecef_m) +
+         length(region.size_m) / 2;
+}
 
 double airLossAtSea_db_per_m(const scenario::Scenario& scenario, const scenario::Emitter& radar) {
   const propagation::EmitterInputs inputs = emitterInputs(scenario, radar);

@@ -366,6 +366,8 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   budget.pointing = pointingOf(emitter, state.beam, ray, budget.excess.reflection);
   budget.boresight_dbwm2 = boresightDensity_dbwm2(emitter, budget);
   budget.warnings = budget.excess.warnings;
+  for (std::string& warning : laterTripWarnings(scenario, emitter, station))
+    budget.warnings.push_back(std::move(warning));
   if (terrain != nullptr) {
     const float lowest_m = *std::min_element(profile.ground_msl_m.begin(), profile.ground_msl_m.end());
     for (std::string& warning :

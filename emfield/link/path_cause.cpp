@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "emfield/link/path_decision.h"
 #include "emfield/link/path_verdict.h"
 
 namespace emscape::emfield {
@@ -24,13 +25,6 @@ std::optional<double> termOf(const PathBudget& budget, const std::string& key) {
 struct LossCause {
   PathCause cause;
   double gain_db;
-};
-
-struct Decision {
-  PathCause cause = PathCause::covered;
-  double missing_db = 0;   ///< to the threshold
-  double gain_db = 0;      ///< without the cause; of terrain, clutter and pointing
-  bool by_filter = false;  ///< of clutter: the filter against it removes the echo as well
 };
 
 std::array<LossCause, 3> lossesOf(const PathBudget& budget, double ways) {
@@ -56,28 +50,30 @@ Decision ofLosses(const PathBudget& budget, double ways, double missing_db) {
   return {largest->cause, missing_db, largest->gain_db};
 }
 
+}  // namespace
+
 Decision decide(const PathBudget& budget, Quantity quantity, double threshold) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::optional<double> value = termOf(budget, scenario::info(quantity).name);
-  if (!budget.active) return {PathCause::silent};
-  if (value && *value >= threshold) return {};
+  if (!budget.active) return {PathCause::silent, kInfinity};
+  if (value && *value >= threshold) return {PathCause::covered, -kInfinity};
   const std::optional<double> snr_db = termOf(budget, "snr_db");
   if (!scenario::needsRadar(quantity) || !snr_db)
-    return ofLosses(budget, 1, value ? threshold - *value : std::numeric_limits<double>::infinity());
+    return ofLosses(budget, 1, value ? threshold - *value : kInfinity);
   const bool is_detection = quantity == Quantity::detection_probability;
   const double needed_db = is_detection ? termOf(budget, "required_snr_db").value_or(0) : threshold;
-  if (is_detection && !budget.unheard.empty()) return {PathCause::range};
+  const double in_clutter_db = termOf(budget, "sclnr_db").value_or(*snr_db);
+  if (is_detection && !budget.unheard.empty() && in_clutter_db >= needed_db) return {PathCause::range};
   const bool is_jammed = !budget.jamming.strongest.empty() && scenario::needsJammer(quantity);
   if (is_jammed && (is_detection ? budget.jamming.unjammed_probability >= threshold : *snr_db >= needed_db))
     return {PathCause::jamming};
   const double missing_db = needed_db - *snr_db;
-  if (missing_db <= 0 && termOf(budget, "sclnr_db").value_or(HUGE_VAL) < *snr_db) {
+  if (missing_db <= 0 && in_clutter_db < *snr_db) {
     const double filtered_db = *snr_db + termOf(budget, "filter_response_db").value_or(0);
-    return {PathCause::clutter, needed_db - *termOf(budget, "sclnr_db"), 0, filtered_db < needed_db};
+    return {PathCause::clutter, needed_db - in_clutter_db, 0, filtered_db < needed_db};
   }
   return ofLosses(budget, 2, missing_db);
 }
-
-}  // namespace
 
 PathCause causeOf(const PathBudget& budget, Quantity quantity, double threshold) {
   return decide(budget, quantity, threshold).cause;

@@ -97,7 +97,8 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
   const auto end_agl_m = static_cast<float>(profile.end.height_msl_m) - profile.ground_msl_m.back();
   if (const int ends = terminal.ends(static_cast<float>(profile.range_m), end_agl_m); ends > 0) {
     double loss_db = static_cast<double>(terminal.lossDb(static_cast<float>(profile.range_m), end_agl_m));
-    if (terminal.is_larger) loss_db = std::max(loss_db - excess.loss_db, 0.0);
+    const double terrain_db = excess.loss_db;
+    if (terminal.is_larger) loss_db = std::max(loss_db - terrain_db, 0.0);
     excess.add("terminal_clutter",
                fmt::format("clutter around {} (P.2108-1, {:g} % of locations{}{})",
                            ends > 1 ? "both ends" : "one end", scenario.ground.terminal_clutter_percent,
@@ -106,13 +107,13 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
                loss_db);
     excess.clutter_db += loss_db;
     constexpr double kGrazing_db = 6;
-    if (!terminal.is_larger && !model.on_smooth_surface && excess.loss_db > kGrazing_db &&
-        std::isfinite(excess.loss_db)) {
+    if (!terminal.is_larger && !model.on_smooth_surface && terrain_db > kGrazing_db &&
+        std::isfinite(terrain_db)) {
       excess.warnings.push_back(fmt::format(
           "emitter '{}': terrain costs {:.1f} dB on this path, and {:.1f} dB of P.2108-1 are added to it: on "
           "measured paths that terrain blocks, such sums were 9 to 20 dB too high in the mean; 'ground: "
           "{{terminal_clutter_combine: larger}}' takes the larger of both",
-          emitter.name, excess.loss_db, loss_db));
+          emitter.name, terrain_db, loss_db));
     }
   }
   if (propagation::hasAirLoss(inputs.emitter)) {

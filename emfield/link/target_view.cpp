@@ -4,7 +4,11 @@
 #include <cmath>
 #include <vector>
 
+#include "emfield/channels/products.h"
+#include "emfield/channels/radar_share.h"
 #include "emfield/columns/station.h"
+#include "emfield/combine/clutter_echo.h"
+#include "emfield/radar/receiver.h"
 #include "emscape/base/units.h"
 
 namespace emscape::emfield {
@@ -87,7 +91,18 @@ double groundSpread_mps(const scenario::Snapshot& snapshot, int radar, int platf
   const double across_mps =
       std::abs(dot(velocity_mps, east) * dot(ray, north) - dot(velocity_mps, north) * dot(ray, east)) /
       length(ray);
-  return across_mps * degToRad(emitter.antenna->beamwidth_az_deg) / (4 * std::sqrt(std::log(2.0)));
+  RadarTask task;
+  task.look = lookOf(emitter, scenario::RadarAim::target);
+  const RadarShare share =
+      radarShare(*snapshot.scenario, radar, snapshot.emitters[static_cast<std::size_t>(radar)], task, {});
+  const Vec3d line = lineTo(station, snapshot.platforms[static_cast<std::size_t>(platform)].position);
+  const auto along = [&line](const Vec3f& axis) {
+    return static_cast<float>(dot(line, vecCast<double>(axis)) / length(line));
+  };
+  const Aim aim = aimAt(share.task.look, {along(share.forward), along(share.right), along(share.up)});
+  const double widening = std::sqrt(1 - static_cast<double>(aim.steer_v) * static_cast<double>(aim.steer_v)) /
+                          static_cast<double>(cosineOfSteering(aim));
+  return across_mps * widening * degToRad(emitter.antenna->beamwidth_az_deg) / (4 * std::sqrt(std::log(2.0)));
 }
 
 void aimFilter(const scenario::Snapshot& snapshot, int radar, int platform, const scenario::Terrain* terrain,

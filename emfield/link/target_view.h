@@ -24,7 +24,8 @@ double speedOverGround_mps(const scenario::Snapshot& snapshot, int radar, int pl
 
 /// Standard deviation (m/s) of the radial speed of the ground across a radar's beam in the direction of a
 /// platform, by the radar's own motion: v cos(elevation) sin(psi) beamwidth / (4 (ln 2)^(1/2)) for a speed v
-/// and an azimuth psi from the track, of a Gaussian beam used both ways. 0 for a radar at rest.
+/// and an azimuth psi from the track, of a Gaussian beam used both ways; the beam of a steered array is wider
+/// by the cosines of its steering, as in its clutter. 0 for a radar at rest.
 /// @see M. A. Richards, Fundamentals of Radar Signal Processing, section 5.2: a bandwidth of 2 v beamwidth
 /// sin(psi) / lambda between the half-power points of one way
 double groundSpread_mps(const scenario::Snapshot& snapshot, int radar, int platform,

@@ -366,6 +366,11 @@ MemoryEstimate FieldSolver::memoryEstimate() const {
 std::vector<std::string> FieldSolver::warnings() const {
   WarningCounts all;
   for (const std::string& warning : impl_->setup.warnings) ++all[warning];
+  for (const scenario::Emitter& emitter : impl_->setup.scenario->emitters) {
+    for (const std::string& warning :
+         laterTripWarnings(*impl_->setup.scenario, emitter, impl_->setup.terrain.get()))
+      ++all[warning];
+  }
   if (impl_->setup.terrain) {
     for (const std::string& warning : impl_->setup.terrain->warnings()) ++all[warning];
     const double at_sea_level = partAtSeaLevel(*impl_->setup.scenario, *impl_->setup.terrain);

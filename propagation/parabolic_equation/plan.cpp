@@ -304,7 +304,7 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
       found.choices.begin(),
       {"largest angle", fmt::format("{:.3g} degrees: {}", radToDeg(max_angle_rad), angle_why)});
   if (settings.range_step_m > 0) {
-    const double largest_m = absorberStep_m(found.grid);
+    const double largest_m = std::max(absorberStep_m(found.grid), found.grid.range_step_m);
     if (settings.range_step_m > largest_m) {
       throw Error(ErrorCode::bad_input,
                   fmt::format("'range_step_m' is {:.4g} m; the absorber allows at most {:.4g} m",

@@ -72,7 +72,7 @@ Json toJson(const PathObstacle& obstacle) {
           {"nu", obstacle.nu},
           {"knife_edge_db", obstacle.knife_edge_db},
           {"kind", obstacle.is_earth_bulge ? "earth" : "terrain"},
-          {"decides", obstacle.decides}};
+          {"decides", obstacle.decides && obstacle.clearanceInFresnelRadii() < 1}};
 }
 
 Json toJson(const Comparison& comparison) {
@@ -237,7 +237,7 @@ Json toJson(const ProfileReport& report) {
           {"time_utc", report.snapshot.time_utc},
           {"active", budget.active},
           {"frequency_hz", budget.frequency_hz},
-          {"waveform", waveformJson(emitterOf(report))},
+          {"waveform", waveformJson(*report.snapshot.scenario, emitterOf(report))},
           {"from", toJson(budget.profile.begin, budget.geometry.begin_ground_msl_m)},
           {"to", toJson(budget.profile.end, budget.geometry.end_ground_msl_m)},
           {"geometry", geometryJson(budget)},
@@ -266,7 +266,7 @@ std::string profileText(const ProfileReport& report) {
           report.snapshot.time_utc.empty() ? "" : " (" + report.snapshot.time_utc + ")",
           quantityText(budget.frequency_hz, "Hz"));
   addGeometry(out, budget);
-  addWaveform(out, emitterOf(report));
+  addWaveform(out, *report.snapshot.scenario, emitterOf(report));
   addObstacles(out, budget);
   addBudget(out, budget);
   addCompared(out, report.compared, budget);

@@ -10,10 +10,16 @@ using scenario::Waveform;
 
 namespace {
 
-Json clutterJson(const scenario::Emitter& emitter) {
+/// True if the map of the land cover may give the land other reflectivities than the radar's own.
+bool isByCover(const scenario::Scenario& scenario, const scenario::Clutter& clutter) {
+  return clutter.land_by_cover && scenario.terrain && !scenario.terrain->land_cover.files.empty();
+}
+
+Json clutterJson(const scenario::Scenario& scenario, const scenario::Emitter& emitter) {
   if (!emitter.clutter) return nullptr;
   const scenario::Clutter& clutter = *emitter.clutter;
   return {{"land_gamma_db", number(clutter.land_gamma_db)},
+          {"land_by_cover", isByCover(scenario, clutter)},
           {"sea_state", clutter.sea_state ? Json(*clutter.sea_state) : Json(nullptr)},
           {"rain", clutter.rain},
           {"range_cell_m", clutter.range_cell_m},
@@ -23,10 +29,15 @@ Json clutterJson(const scenario::Emitter& emitter) {
 }
 
 /// "land (gamma -15.0 dB), sea (state 4), rain"
-std::string sourcesOf(const scenario::Clutter& clutter) {
+std::string sourcesOf(const scenario::Scenario& scenario, const scenario::Clutter& clutter) {
   std::string text;
   const auto add = [&text](const std::string& source) { text += (text.empty() ? "" : ", ") + source; };
-  if (clutter.land_gamma_db) add(fmt::format("land (gamma {:.1f} dB)", *clutter.land_gamma_db));
+  if (clutter.land_gamma_db) {
+    add(fmt::format(isByCover(scenario, clutter)
+                        ? "land by its cover (gamma {:.1f} dB where the cover names no kind of land)"
+                        : "land (gamma {:.1f} dB)",
+                    *clutter.land_gamma_db));
+  }
   if (clutter.sea_state) add(fmt::format("sea (state {})", *clutter.sea_state));
   if (clutter.rain) add("rain");
   return text;
@@ -34,7 +45,7 @@ std::string sourcesOf(const scenario::Clutter& clutter) {
 
 }  // namespace
 
-Json waveformJson(const scenario::Emitter& emitter) {
+Json waveformJson(const scenario::Scenario& scenario, const scenario::Emitter& emitter) {
   if (!emitter.waveform) return nullptr;
   const Waveform& waveform = *emitter.waveform;
   return {{"prf_hz", waveform.prf_hz},
@@ -48,10 +59,10 @@ Json waveformJson(const scenario::Emitter& emitter) {
           {"hits_per_scan",
            number(scenario::hitsPerScan(emitter.scan, emitter.antenna->beamwidth_az_deg, waveform.prf_hz))},
           {"pulses", emitter.receiver.pulses},
-          {"clutter", clutterJson(emitter)}};
+          {"clutter", clutterJson(scenario, emitter)}};
 }
 
-void addWaveform(Text& out, const scenario::Emitter& emitter) {
+void addWaveform(Text& out, const scenario::Scenario& scenario, const scenario::Emitter& emitter) {
   if (!emitter.waveform) return;
   const Waveform& waveform = *emitter.waveform;
   const auto line = [&](const char* name, const std::string& text) { out.add("  {:<22} {}\n", name, text); };
@@ -73,7 +84,7 @@ void addWaveform(Text& out, const scenario::Emitter& emitter) {
   if (hits) line("hits per scan", fmt::format("{:.4g}; {} are integrated", *hits, emitter.receiver.pulses));
   if (!emitter.clutter) return;
   const scenario::Clutter& clutter = *emitter.clutter;
-  line("clutter", fmt::format("{}; range cell {:g} m", sourcesOf(clutter), clutter.range_cell_m));
+  line("clutter", fmt::format("{}; range cell {:g} m", sourcesOf(scenario, clutter), clutter.range_cell_m));
   if (!clutter.mti) return;
   line("filter", fmt::format("{} of {} pulses", toString(clutter.mti->kind), clutter.mti->pulses));
   if (clutter.hasSurface())

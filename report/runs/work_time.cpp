@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "emfield/geometry/clutter_map.h"
 #include "emfield/ground/ground_posts.h"
 #include "emfield/solver/beam_positions.h"
 #include "emfield/solver/field_plan.h"
@@ -34,6 +35,9 @@ constexpr double kPower_ns = 3;          ///< antenna and sum of a voxel and emi
 constexpr double kEcho_ns = 15;          ///< a radar's look at a voxel
 constexpr double kJammer_ns = 8;         ///< a jammer seen by that look
 constexpr double kClutter_ns = 60;       ///< clutter beside the echo
+constexpr double kMapFace_ns = 30;       ///< a face of the ground in a radar's map of clutter
+constexpr double kMapSea_ns = 100;       ///< the same with a sea
+constexpr double kMapCell_ns = 10;       ///< a cell of the map
 constexpr double kArc_ns = 4;            ///< an arc of looks or passes at a voxel
 constexpr double kPosition_ns = 4;       ///< a position of a beam, for occupancy
 constexpr double kProduct_ns = 3;        ///< a channel's value
@@ -73,6 +77,25 @@ Paths pathsOf(const Scenario& scenario, const scenario::Terrain* terrain, const 
       paths.outside += kEach;
   }
   return paths;
+}
+
+/// A radar's map of surface clutter; none without one.
+std::optional<emfield::ClutterMapTask> clutterMapOf(const Scenario& scenario, const Emitter& radar) {
+  const scenario::SitePosition& site =
+      scenario.platforms[static_cast<std::size_t>(radar.platform)].track.front().position;
+  return emfield::clutterMapTask(
+      scenario, radar,
+      emfield::makeStation({site.latitude_deg, site.longitude_deg, 0}, 0, scenario.atmosphere));
+}
+
+double clutterMap_ns(const Scenario& scenario, const scenario::Terrain* terrain, const Emitter& radar) {
+  const std::optional<emfield::ClutterMapTask> task = clutterMapOf(scenario, radar);
+  if (!task) return 0;
+  const emfield::ClutterGrid& grid = task->grid;
+  const auto posts = double(emfield::clutterPostRanges(grid, emfield::postSpacing_m(terrain)).size());
+  const double faces = posts + double(grid.ranges) / grid.steps_of_cell;
+  return grid.azimuths *
+         ((task->surface.has_sea ? kMapSea_ns : kMapFace_ns) * faces + kMapCell_ns * grid.ranges);
 }
 
 /// The sweep of an emitter's beam in the interval that begins at a time, and a radar's looks.
@@ -156,9 +179,11 @@ double voxel_ns(const emfield::FieldPlan& plan, std::size_t channel, int e,
     const emfield::IntervalArcs& found = beam->looks.arcs;
     arcs = double(found.directions.size() + found.counts.size() + found.passes.size());
   }
+  const std::optional<emfield::ClutterMapTask> map = clutterMapOf(*plan.scenario, emitter);
+  const double trips = map ? map->grid.trips.count : 1;
   const bool has_jamming = scenario::needsJammer(plan.channels[channel].quantity);
-  return kEcho_ns + (has_jamming ? kJammer_ns * double(jammers) : 0) + (emitter.clutter ? kClutter_ns : 0) +
-         kArc_ns * arcs;
+  return kEcho_ns + (has_jamming ? kJammer_ns * double(jammers) : 0) +
+         (emitter.clutter ? kClutter_ns : 0) * trips + kArc_ns * arcs;
 }
 
 /// How often in a run the fields of channels are computed anew.
@@ -251,6 +276,7 @@ WorkTime workTimeOf(const Scenario& scenario, const scenario::Terrain* terrain,
     for (const emfield::EmitterChoice& choice : choices) {
       if (choice.emitter == emitter.name) once_ns += 1e9 * choice.time_s;
     }
+    if (plan.needs[e].clutter_map) once_ns += clutterMap_ns(scenario, terrain, emitter);
     // Of jammers of radars alone only the paths to these.
     losses_ns += (plan.needs[e].any ? once_ns : std::min(once_ns, kPathsAlone_ns)) * changed.ofPlace(e);
     const std::optional<emfield::IntervalBeam>& beam = changed.beam(e);

@@ -151,13 +151,12 @@ void checkBandwidth(const Emitter& radar, const Section& receiver, ParseContext&
   const double excess_db = radar.receiver.processing_gain_db -
                            ratioToDb(radar.receiver.bandwidth_hz * radar.waveform->pulse_width_s * coherent);
   const bool has_gain = receiver.has("processing_gain_db");
-  if (sums && !has_gain) {
+  if (sums && radar.receiver.processing_gain_db == 0) {
     context.problems.addWarning(
         receiver.location(),
-        fmt::format(
-            "the filter of '{}' sums {} pulses coherently, but 'processing_gain_db' is not given: its "
-            "echoes are those of one pulse. The sum has up to {:.1f} dB, less about 3 by its weights",
-            radar.name, coherent, ratioToDb(coherent)));
+        fmt::format("the filter of '{}' sums {} pulses coherently, but 'processing_gain_db' is {}: its "
+                    "echoes are those of one pulse. The sum has up to {:.1f} dB, less about 3 by its weights",
+                    radar.name, coherent, has_gain ? "0" : "not given", ratioToDb(coherent)));
   }
   if (!(excess_db > kTolerance_db)) return;
   context.problems.addWarning(

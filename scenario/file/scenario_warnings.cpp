@@ -424,28 +424,33 @@ double topSpeed_mps(const Platform& platform) {
   return largest_mps;
 }
 
-/// Warns about radars that move faster than their filters are told: the spread of surface clutter across a
-/// two-way Gaussian beam abeam, v beamwidth / (4 (ln 2)^(1/2)).
+/// Warns about clutter of moving radars that is left out, and about the spread across a two-way Gaussian beam
+/// abeam, v beamwidth / (4 (ln 2)^(1/2)), of which their filters are not told.
 void warnOfMovingRadars(const Scenario& scenario, const Section& root, ParseContext& context) {
+  constexpr double kFlies_mps = 30, kRounding = 0.99;
   const std::vector<Section> sections = root.sections("emitters");
   WarningOfItems warning;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const Emitter& radar = scenario.emitters[i];
-    if (!radar.clutter || !radar.clutter->mti || !radar.clutter->hasSurface()) continue;
+    if (!radar.clutter || !radar.clutter->hasSurface()) continue;
     const double speed_mps = topSpeed_mps(scenario.platforms[static_cast<std::size_t>(radar.platform)]);
     const double spread_mps =
         speed_mps * degToRad(radar.antenna->beamwidth_az_deg) / (4 * std::sqrt(std::log(2.0)));
-    constexpr double kRounding = 0.99;
-    if (spread_mps * kRounding <= std::max(radar.clutter->mti->surface_spread_mps, 0.05)) continue;
-    warning.add(
-        sections[i].section("clutter").locationOf("mti"), radar.name,
-        fmt::format(
-            "radar '{}' moves at up to {:.0f} m/s: the Doppler shift of the ground by that is taken as "
-            "compensated by the radar, its altitude line and side lobes are left out, and abeam the "
-            "width of the beam spreads the clutter by {:.2g} m/s: 'link' and 'exposure' compute it towards "
-            "their targets, elsewhere 'surface_spread_m_s: {:.2g}' would include it",
-            radar.name, speed_mps, spread_mps,
-            std::hypot(spread_mps, radar.clutter->mti->surface_spread_mps)));
+    const double told_mps = radar.clutter->mti ? radar.clutter->mti->surface_spread_mps : HUGE_VAL;
+    const bool spreads = spread_mps * kRounding > std::max(told_mps, 0.05);
+    if (!spreads && speed_mps < kFlies_mps) continue;
+    std::string text = fmt::format(
+        "radar '{}' moves at up to {:.0f} m/s: its clutter has neither an altitude line (the ground straight "
+        "below) nor side lobes at other Doppler shifts: detection among those is too good",
+        radar.name, speed_mps);
+    if (radar.clutter->mti) text += "; the Doppler shift of the ground is taken as compensated by the radar";
+    if (spreads) {
+      text += fmt::format(
+          "; abeam the width of the beam spreads the clutter by {:.2g} m/s: 'link' and 'exposure' compute it "
+          "towards their targets, elsewhere 'surface_spread_m_s: {:.2g}' would include it",
+          spread_mps, std::hypot(spread_mps, told_mps));
+    }
+    warning.add(sections[i].section("clutter").location(), radar.name, text);
   }
   warning.addTo(context.problems);
 }

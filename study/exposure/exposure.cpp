@@ -188,7 +188,11 @@ class Track {
       const bool is_on = snapshot.emitters[static_cast<std::size_t>(emitters[n])].active;
       const double value = is_on ? valueOf(channels_[n]) : -HUGE_VAL;
       row.each.push_back(value);
-      const bool has_field = request_.quantity == Quantity::detection_probability ? value > 0 : value > floor;
+      // A target that no echo reveals is reported at the rate of false alarms.
+      const double by_chance =
+          1.001 * scenario_->emitters[static_cast<std::size_t>(emitters[n])].receiver.pfa;
+      const bool has_field =
+          value > (request_.quantity == Quantity::detection_probability ? by_chance : floor);
       if (!has_field || value <= largest) continue;
       row.best = static_cast<int>(n);
       largest = value;

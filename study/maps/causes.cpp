@@ -3,40 +3,18 @@
 #include <cmath>
 #include <optional>
 
+#include "emfield/link/path_decision.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/work.h"
 #include "emscape/emfield/link/path_budget.h"
-#include "emscape/emfield/link/path_cause.h"
 #include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::study {
 namespace {
 
-using emfield::PathBudget;
 using emfield::PathCause;
-
-/// The budget with the largest value of a quantity; that of a silent emitter only if all are silent.
-class BestPath {
- public:
-  explicit BestPath(scenario::Quantity quantity) : name_(scenario::info(quantity).name) {}
-
-  void add(PathBudget budget) {
-    const emfield::BudgetTerm* const term = budget.find(name_);
-    const double value = term == nullptr || !budget.active ? -HUGE_VAL : term->value;
-    const bool is_better = !best_ || value > value_ || (value == value_ && budget.active && !best_->active);
-    if (!is_better) return;
-    value_ = value;
-    best_ = std::move(budget);
-  }
-  const std::optional<PathBudget>& best() const { return best_; }
-
- private:
-  const char* name_;
-  double value_ = -HUGE_VAL;
-  std::optional<PathBudget> best_;
-};
 
 }  // namespace
 
@@ -61,21 +39,19 @@ std::optional<PathCause> causeAt(const scenario::Snapshot& snapshot, scenario::Q
                                  double threshold, const emfield::PathEnd& end,
                                  const scenario::Terrain* terrain) {
   const std::vector<scenario::Emitter>& emitters = snapshot.scenario->emitters;
-  BestPath best(quantity);
-  bool is_jammed = false;  // one of the radars, which would cover the point without the jammers
+  std::optional<emfield::Decision> nearest;
   for (std::size_t e = 0; e < emitters.size(); ++e) {
     if (scenario::needsRadar(quantity) && emitters[e].kind != scenario::EmitterKind::radar) continue;
     try {
-      PathBudget budget =
-          emfield::pathBudget(snapshot, static_cast<int>(e), end, emitters[e].propagation.model, terrain);
-      is_jammed |= emfield::causeOf(budget, quantity, threshold) == PathCause::jamming;
-      best.add(std::move(budget));
+      const emfield::Decision decision = emfield::decide(
+          emfield::pathBudget(snapshot, static_cast<int>(e), end, emitters[e].propagation.model, terrain),
+          quantity, threshold);
+      if (!nearest || decision.isNearerThan(*nearest)) nearest = decision;
     } catch (const Error&) {  // its ends have no path, or an end is absent
     }
   }
-  if (!best.best()) return std::nullopt;
-  const PathCause cause = emfield::causeOf(*best.best(), quantity, threshold);
-  return is_jammed && cause != PathCause::covered ? PathCause::jamming : cause;
+  if (!nearest) return std::nullopt;
+  return nearest->cause;
 }
 
 std::vector<float> causesOf(const MapGrid& grid, const CoverageRequest& request,

@@ -15,8 +15,9 @@ namespace emscape::study {
 /// True for quantities that the budget of a path has.
 bool hasCauses(scenario::Quantity quantity);
 
-/// What decides at a point, by the path of the active emitter with the largest value; none if no emitter has
-/// a path.
+/// What decides at a point, by the path of the emitter that is nearest to the threshold: with the fewest
+/// decibels missing, as of which only a range limit or jamming takes the detection away; none if no emitter
+/// has a path.
 std::optional<emfield::PathCause> causeAt(const scenario::Snapshot& snapshot, scenario::Quantity quantity,
                                           double threshold, const emfield::PathEnd& end,
                                           const scenario::Terrain* terrain);

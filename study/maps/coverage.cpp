@@ -79,32 +79,40 @@ std::optional<std::string> scaleWarning(const MapGrid& grid) {
       grid.cell_m, grid.crs, least_m, largest_m);
 }
 
-/// Warning for times at which no emitter of the quantity is active: their maps are empty.
-std::optional<std::string> inactiveWarning(const std::shared_ptr<const scenario::Scenario>& at_targets,
-                                           const scenario::TerrainPtr& terrain, Quantity quantity,
-                                           const std::vector<double>& times_s) {
+/// Warnings for times at which no emitter of the quantity is active, whose maps are empty, and for those at
+/// which a jammer is not.
+std::vector<std::string> inactiveWarnings(const std::shared_ptr<const scenario::Scenario>& at_targets,
+                                          const scenario::TerrainPtr& terrain, Quantity quantity,
+                                          const std::vector<double>& times_s) {
   const bool of_radars = scenario::needsRadar(quantity);
+  const std::vector<scenario::Emitter>& emitters = at_targets->emitters;
   std::vector<double> empty_s;
+  std::vector<std::vector<double>> silent_s(emitters.size());
   for (const double time_s : times_s) {
     const scenario::Snapshot snapshot = scenario::snapshotAt(at_targets, terrain.get(), time_s);
     bool is_active = false;
-    for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
-      const bool counts = !of_radars || at_targets->emitters[e].kind == scenario::EmitterKind::radar;
+    for (std::size_t e = 0; e < emitters.size(); ++e) {
+      const bool counts = !of_radars || emitters[e].kind == scenario::EmitterKind::radar;
       is_active = is_active || (counts && snapshot.emitters[e].active);
+      if (!snapshot.emitters[e].active) silent_s[e].push_back(time_s);
     }
     if (!is_active) empty_s.push_back(time_s);
   }
-  if (empty_s.empty()) return std::nullopt;
-  const char* const kind = of_radars ? "radar" : "emitter";
-  if (empty_s.size() == 1) {
-    return fmt::format(
-        "no {} is active at t = {} s (active_s, or outside its track): the maps of this time are empty", kind,
-        empty_s.front());
+  std::vector<std::string> warnings;
+  const auto warn = [&](const std::string& who, const std::vector<double>& at_s, const char* maps) {
+    if (at_s.empty()) return;
+    const std::string when = at_s.size() == 1 ? fmt::format("at t = {} s", at_s.front())
+                                              : fmt::format("at {} of {} times, first at t = {} s",
+                                                            at_s.size(), times_s.size(), at_s.front());
+    warnings.push_back(fmt::format("{} active {} (active_s, blink, or outside its track): the maps of {} {}",
+                                   who, when, at_s.size() == 1 ? "this time" : "these times", maps));
+  };
+  warn(fmt::format("no {} is", of_radars ? "radar" : "emitter"), empty_s, "are empty");
+  for (std::size_t e = 0; e < emitters.size() && of_radars && scenario::needsJammer(quantity); ++e) {
+    if (emitters[e].kind == scenario::EmitterKind::jammer && emitters[e].enabled)
+      warn(fmt::format("jammer '{}' is not", emitters[e].name), silent_s[e], "have none of its jamming");
   }
-  return fmt::format(
-      "no {} is active at {} of {} times, first at t = {} s (active_s, or outside its track): their maps are "
-      "empty",
-      kind, empty_s.size(), times_s.size(), empty_s.front());
+  return warnings;
 }
 
 /// Warnings for the parts of a map beyond the ranges in which radars look.
@@ -374,10 +382,11 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
   std::vector<std::vector<std::string>> warnings(scenarios.size());
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
     warnings[s] = warningsOf(*scenarios[s]);
-    const auto inactive = inactiveWarning(at_targets[s], terrain, requests.front().quantity, times_s);
     const std::string outside = scenario::outsideClockText(times_s, at_targets[s]->clock);
     if (!outside.empty()) warnings[s].push_back(outside);
-    for (const auto& warning : {inactive, scanWarning(*at_targets[s], requests), impl_->scale_warning,
+    for (std::string& warning : inactiveWarnings(at_targets[s], terrain, requests.front().quantity, times_s))
+      warnings[s].push_back(std::move(warning));
+    for (const auto& warning : {scanWarning(*at_targets[s], requests), impl_->scale_warning,
                                 heightWarning(requests), burnThroughWarning(requests)})
       if (warning) warnings[s].push_back(*warning);
     addLowHeights(*at_targets[s], requests, warnings[s]);

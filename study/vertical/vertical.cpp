@@ -102,10 +102,54 @@ int keepOnly(scenario::Scenario& scenario, int emitter, bool with_jammers) {
   return index;
 }
 
+/// The warnings of cuts that are computed one by one: those that differ only in their figures are told once.
+class WarningsOfCuts {
+ public:
+  void add(double azimuth_deg, const std::vector<std::string>& warnings) {
+    for (const std::string& text : warnings) {
+      const auto known = std::find_if(told_.begin(), told_.end(), [&](const Told& told) {
+        return withoutFigures(told.text) == withoutFigures(text);
+      });
+      if (known == told_.end()) {
+        told_.push_back({text, azimuth_deg, {}});
+      } else if (known->text != text) {
+        known->others_deg.push_back(azimuth_deg);
+      }
+    }
+  }
+
+  std::vector<std::string> texts() const {
+    std::vector<std::string> texts;
+    for (const Told& told : told_) {
+      texts.push_back(told.others_deg.empty()
+                          ? told.text
+                          : fmt::format("{} (azimuth {:g} degrees; likewise, with other figures, at {:g})",
+                                        told.text, told.azimuth_deg, fmt::join(told.others_deg, ", ")));
+    }
+    return texts;
+  }
+
+ private:
+  struct Told {
+    std::string text;
+    double azimuth_deg;
+    std::vector<double> others_deg;
+  };
+
+  static std::string withoutFigures(std::string text) {
+    text.erase(std::remove_if(text.begin(), text.end(),
+                              [](char letter) { return (letter >= '0' && letter <= '9') || letter == '.'; }),
+               text.end());
+    return text;
+  }
+
+  std::vector<Told> told_;
+};
+
 /// The field of the request over a scenario, by cut.
 struct Solved {
   std::vector<std::vector<float>> values, ground_msl_m;
-  std::vector<std::string> warnings;
+  WarningsOfCuts warnings;
 };
 
 class Solver {
@@ -161,10 +205,7 @@ class Solver {
     const std::size_t channel = *channelOf(emitter_, solver.channels());
     solver.update(snapshot);
     const auto volume = solver.volumes()[channel].host();
-    for (std::string& warning : solver.warnings()) {
-      if (std::find(solved.warnings.begin(), solved.warnings.end(), warning) == solved.warnings.end())
-        solved.warnings.push_back(std::move(warning));
-    }
+    solved.warnings.add(request_.azimuths_deg[begin_cut], solver.warnings());
     const std::size_t ranges = static_cast<std::size_t>(request_.ranges);
     const std::size_t positions = ranges * (end_cut - begin_cut);
     for (std::size_t cut = 0; cut < end_cut - begin_cut; ++cut) {
@@ -373,7 +414,7 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
   const Solver solver(request, index, diagram, std::move(options));
   Solved solved = solver.solve(snapshot, below);
   diagram.warnings = warningsOf(*scenario);
-  diagram.warnings.insert(diagram.warnings.end(), solved.warnings.begin(), solved.warnings.end());
+  for (std::string& warning : solved.warnings.texts()) diagram.warnings.push_back(std::move(warning));
   if (const std::string outside = scenario::outsideClockText({request.time_s}, scenario->clock);
       !outside.empty())
     diagram.warnings.push_back(outside);

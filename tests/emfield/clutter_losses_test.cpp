@@ -298,7 +298,7 @@ TEST(TerminalClutter, IsAddedOrReplacesASmallerLossByTerrain) {
   const auto lossAt = [&](double latitude_deg) {
     return budgetTo(scenario, hills, latitude_deg, 102).excess.loss_db;
   };
-  for (const double latitude_deg : {45.018, 45.03, 45.06}) {
+  for (const double latitude_deg : {45.005, 45.018, 45.03, 45.06}) {
     scenario->ground.terminal_clutter = TerminalClutterModel::none;
     const double by_terrain_db = lossAt(latitude_deg);
     scenario->ground.terminal_clutter = TerminalClutterModel::p2108;
@@ -312,6 +312,9 @@ TEST(TerminalClutter, IsAddedOrReplacesASmallerLossByTerrain) {
       });
     };
     EXPECT_EQ(isWarned(), by_terrain_db > 6) << by_terrain_db;
+    if (latitude_deg < 45.01) {
+      EXPECT_LT(by_terrain_db, 1) << "the loss of P.2108-1 is none by terrain";
+    }
     scenario->ground.terminal_clutter_combine = propagation::ClutterCombination::larger;
     EXPECT_NEAR(lossAt(latitude_deg), std::max(by_terrain_db, clutter_db), 0.02);
     EXPECT_FALSE(isWarned());
@@ -344,6 +347,10 @@ TEST(ClutterText, NamesWhatTheLossesInclude) {
   EXPECT_THAT(clutterText(*scenario),
               HasSubstr("50 % of locations, or the loss by terrain if that is larger"));
   EXPECT_THAT(clutterWarnings(*scenario, emitter), IsEmpty());
+  scenario->ground.kind = propagation::GroundKind::sea;
+  EXPECT_THAT(clutterWarnings(*scenario, emitter),
+              Contains(HasSubstr("P.2108-1 is for towns and suburbs, but the 'kind' of 'ground' is sea")));
+  scenario->ground.kind = propagation::GroundKind::average_ground;
   emitter.frequency_hz = 100e6;
   EXPECT_EQ(clutterText(*scenario), "none");
   EXPECT_THAT(clutterWarnings(*scenario, emitter),
@@ -363,6 +370,10 @@ TEST(ClutterText, NamesWhatTheLossesInclude) {
   scenario->emitters[1].name = "other";
   scenario->emitters[1].propagation.model = PropagationModel::free_space;
   EXPECT_EQ(clutterText(*scenario), "'mast': 12 m high along the path; 'other': none");
+  scenario->emitters.pop_back();
+  scenario->emitters[0].propagation = {};
+  scenario->emitters[0].clutter.emplace();
+  EXPECT_EQ(clutterText(*scenario), "none along the paths; radars with echoes of clutter: 'mast'");
 }
 
 TEST(SmoothSurface, WarnsOfPointsBelowItAndOfTerrainThatTwoRayIgnores) {

@@ -118,6 +118,30 @@ TEST(ClutterMap, LowGroundIsSeaOnlyWhereThereIsSea) {
   EXPECT_GT(of_land.at(east, 8000).echo, 10 * of_sea.at(east, 8000).echo);
 }
 
+// A high PRF over a large region, whose map has steps of 0.4 km and more.
+TEST(ClutterOfAPath, OfManyTripsDoesNotDependOnTheMapsSteps) {
+  scenario::Emitter radar = cluttered(trackingRadar());
+  radar.antenna = scenario::makeGaussian(kGain_dbi, 3, 3, -40);
+  radar.clutter->sea_state = 5;
+  radar.waveform = scenario::Waveform{kSpeedOfLight / 2 / 600, 3e-7, {}};
+  radar.waveform->limits_detection = false;
+  radar.clutter->range_cell_m = 45;
+  const auto clutterIn = [&](double size_m) {
+    const auto scenario =
+        emptyScenario(FrameKind::altitude, kLatitude_deg, kLongitude_deg, {size_m, size_m, 12000}, {8, 8, 2});
+    addEmitter(*scenario, {kLatitude_deg, kLongitude_deg, 8000}, radar);
+    scenario->output.quantities = {"sclnr_db"};
+    const PathEnd end{{kLatitude_deg, kLongitude_deg + 0.8, 6000}, 6000};
+    const PathBudget budget =
+        pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0, end, radar.propagation.model, nullptr);
+    return budget.find("surface_clutter_to_noise_db")->value;
+  };
+  const double wanted_db = clutterIn(600e3);  // beyond the horizon
+  EXPECT_GT(wanted_db, -20);
+  EXPECT_NEAR(clutterIn(1000e3), wanted_db, 1);
+  EXPECT_NEAR(clutterIn(2000e3), wanted_db, 1);
+}
+
 // ---- the field
 // ---------------------------------------------------------------------------------------------
 
@@ -293,6 +317,27 @@ TEST(ClutterWarnings, NameThePartOfTheGroundAtSeaLevelThatIsTakenForLand) {
               ::testing::ContainsRegex("also the 3[78] % of it that are at or below mean sea level"));
   scenario->emitters[0].clutter->sea_state = 2;
   EXPECT_THAT(warnings(), ::testing::Not(::testing::HasSubstr("mean sea level; where")));
+}
+
+TEST(ClutterWarnings, NameSurfacesBeyondTheRegionWhoseEchoesArriveWithThoseInside) {
+  const auto scenario =
+      emptyScenario(FrameKind::altitude, kLatitude_deg, kLongitude_deg, {40e3, 40e3, 1000}, {8, 8, 2});
+  scenario::Emitter radar = cluttered(trackingRadar());
+  radar.clutter->sea_state = 3;
+  radar.waveform->prf_hz = 1000;  // 150 km
+  addEmitter(*scenario, middleOf(*scenario), radar);
+  scenario->output.quantities = {"sclnr_db"};
+  const auto warningsAt = [&](double height_msl_m) {
+    scenario::SitePosition& site = scenario->platforms[0].track[0].position;
+    site.height_ellipsoid_m.reset();
+    site.height_msl_m = height_msl_m;
+    const FieldSolver solver(scenario, nullptr, {});
+    return solver.warnings().empty() ? std::string() : solver.warnings()[0];
+  };
+  EXPECT_EQ(warningsAt(500), "") << "a horizon of 92 km";
+  EXPECT_THAT(
+      warningsAt(8000),
+      ::testing::HasSubstr("surfaces between 150 km and its horizon at 369 km are beyond the region"));
 }
 
 TEST_P(Clutter, EntersDetectionAsNoise) {

@@ -411,6 +411,23 @@ TEST(Detection, AMovingRadarsGroundIsSpreadAcrossItsBeam) {
   EXPECT_NEAR(widthHz(1, 10e9, 0, 20e3), 0, 0.1) << "ahead";
 }
 
+TEST(Detection, AMovingArraysGroundIsSpreadAcrossItsSteeredBeam) {
+  const auto scenario = radarAndTarget();
+  flyNorth(*scenario, 100, *scenario->platforms[0].track[0].position.height_ellipsoid_m);
+  scenario->emitters[0].antenna = scenario::makePhasedArray(30, 40, 24, 0.5, 0);
+  scenario->emitters[0].scan = {};
+  scenario->emitters[0].scan.kind = scenario::ScanKind::dwell_list;
+  scenario->emitters[0].scan.dwells = {{0, 0, 1}};
+  scenario->output.radar_look = scenario::RadarAim::target;
+  const auto perSine = [&](double azimuth_deg) {  // of the array's plane, which looks north
+    const double azimuth_rad = degToRad(azimuth_deg);
+    scenario->platforms[1] =
+        fixedPlatform(pointAt(*scenario, 20e3 * std::sin(azimuth_rad), 20e3 * std::cos(azimuth_rad)));
+    return groundSpread_mps(scenario::instantAt(scenario, nullptr, 0), 0, 1, nullptr) / std::sin(azimuth_rad);
+  };
+  EXPECT_NEAR(perSine(55) / perSine(5) * std::cos(degToRad(55.0)) / std::cos(degToRad(5.0)), 1, 0.005);
+}
+
 TEST(Detection, TakesTheCrossSectionFromTheRadarsAspect) {
   const auto scenario = radarAndTarget();
   const auto table = std::make_shared<SidewaysTable>();

@@ -219,6 +219,16 @@ TEST(ParabolicField, DoesNotDependOnPowerAndAzimuth) {
     EXPECT_NEAR(stronger->values[v] - volume->values[v], 20, 0.01);
 }
 
+// At large angles it is longer than a quarter of the absorber's length.
+TEST(ParabolicField, TakesItsAutomaticRangeStepAlsoWhenItIsGiven) {
+  const auto scenario = around(1e9, 30, {11e3, 11e3, 200}, {11, 11, 10});
+  propagation::ParabolicEquationSettings& settings = scenario->emitters[0].propagation.parabolic_equation;
+  settings.max_angle_deg = 35;
+  const auto automatic = solve(scenario);
+  settings.range_step_m = 50;
+  EXPECT_EQ(solve(scenario)->values, automatic->values);
+}
+
 struct Refusal {
   const char* name;
   std::function<void(scenario::Scenario&)> edit;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "emfield/link/path_decision.h"
 #include "emscape/emfield/link/path_budget.h"
 
 namespace emscape::emfield {
@@ -50,6 +51,9 @@ TEST(PathCause, IsJammingClutterRangeOrSilenceWhereTheyTakeTheDetectionAway) {
   EXPECT_EQ(decisionText(budget), "Jamming by 'jammer' decides.");
   budget.unheard = "beyond the radar's instrumented range of 5.0 km";
   EXPECT_EQ(causeOfDetection(budget), PathCause::range);
+  budget.terms[0].value = -60;
+  budget.jamming.unjammed_probability = 0;
+  EXPECT_EQ(causeOfDetection(budget), PathCause::terrain) << "nor would it be detected without the limit";
   budget.active = false;
   EXPECT_EQ(causeOfDetection(budget), PathCause::silent);
   budget = radarBudget(20);
@@ -60,6 +64,23 @@ TEST(PathCause, IsJammingClutterRangeOrSilenceWhereTheyTakeTheDetectionAway) {
   budget.terms.push_back({"filter_response_db", "", -HUGE_VAL, "dB", ""});
   EXPECT_EQ(decisionText(budget),
             "The filter against clutter decides: it removes the echo of a target of this radial speed.");
+}
+
+TEST(PathCause, OfSeveralEmittersIsThatOfTheNearestToDetectingWhateverTheirOrder) {
+  const auto decide = [](const PathBudget& budget) {
+    return emfield::decide(budget, Quantity::detection_probability, 0.5);
+  };
+  PathBudget beyond_range = radarBudget(20), hopeless = radarBudget(-60), silent = radarBudget(20);
+  beyond_range.terms[2].value = 0;
+  beyond_range.unheard = "beyond the radar's instrumented range of 5.0 km";
+  hopeless.excess.loss_db = 100;
+  silent.active = false;
+  const std::vector<Decision> nearest_first{decide(radarBudget(20)), decide(beyond_range),
+                                            decide(radarBudget(-10)), decide(hopeless), decide(silent)};
+  for (std::size_t i = 0; i < nearest_first.size(); ++i) {
+    for (std::size_t k = 0; k < nearest_first.size(); ++k)
+      EXPECT_EQ(nearest_first[i].isNearerThan(nearest_first[k]), i < k) << i << ", " << k;
+  }
 }
 
 TEST(PathCause, OfASignalCountsItsLossesOnce) {

@@ -239,17 +239,20 @@ TEST(ScenarioWarnings, NameAFilterThatRemovesAllClutter) {
 }
 
 TEST(ScenarioWarnings, NameTheSpreadOfClutterByAMovingRadar) {
-  const auto warningsWith = [](const std::string& spread) {
+  const auto warningsWith = [](const std::string& spread, const std::string& to_latitude_deg = "36.48") {
     const std::string position = "latitude_deg: 36.3, longitude_deg: -84.25, height_msl_m: 3000";
-    const std::string track =
-        "{points: [{t_s: 0, " + position +
-        "}, {t_s: 100, latitude_deg: 36.48, longitude_deg: -84.25, height_msl_m: 3000}]}";
+    const std::string track = "{points: [{t_s: 0, " + position +
+                              "}, {t_s: 100, latitude_deg: " + to_latitude_deg +
+                              ", longitude_deg: -84.25, height_msl_m: 3000}]}";
     return messagesOf("clutter.yaml", {{"platforms.ridge site.position", "null"},
                                        {"platforms.ridge site.track", track},
                                        {"emitters.search radar.clutter.mti.surface_spread_m_s", spread}});
   };
   EXPECT_THAT(warningsWith("0.4"), HasSubstr("radar 'search radar' moves at up to 200 m/s"));
-  EXPECT_THAT(warningsWith("20"), Not(HasSubstr("moves at up to")));
+  EXPECT_THAT(warningsWith("0.4"), HasSubstr("abeam the width of the beam spreads the clutter by 1.6 m/s"));
+  EXPECT_THAT(warningsWith("20"), HasSubstr("neither an altitude line"));
+  EXPECT_THAT(warningsWith("20"), Not(HasSubstr("abeam")));
+  EXPECT_THAT(warningsWith("20", "36.309"), Not(HasSubstr("moves at up to"))) << "10 m/s";
 }
 
 TEST(ScenarioWarnings, KindThatConcernsManyEmittersIsOneLine) {

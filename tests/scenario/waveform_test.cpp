@@ -160,6 +160,8 @@ TEST(Waveform, EchoesAboveAMatchedFilterAreAWarning) {
               HasSubstr("12.0 dB above those of a matched filter"));
   EXPECT_THAT(warned("", "{kind: pulse_doppler, pulses: 16}"),
               HasSubstr("sums 16 pulses coherently, but 'processing_gain_db' is not given"));
+  EXPECT_THAT(warned(", processing_gain_db: 0", "{kind: pulse_doppler, pulses: 16}"),
+              HasSubstr("sums 16 pulses coherently, but 'processing_gain_db' is 0"));
 }
 
 TEST(Waveform, IsRefusedWherePulsesOverlapOrMissTheirCount) {

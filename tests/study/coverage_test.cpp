@@ -72,6 +72,23 @@ TEST(Coverage, WarnsOfBeamsBetweenTimesOfAProduct) {
       << "radars look at the target";
 }
 
+TEST(Coverage, WarnsOfAJammerThatIsSilentAtItsTime) {
+  auto scenario =
+      std::make_shared<scenario::Scenario>(*scenario::loadScenario(test::shippedScenario("jacksboro.yaml")));
+  for (scenario::Emitter& emitter : scenario->emitters)
+    if (emitter.kind == scenario::EmitterKind::jammer) emitter.active_s = {{0, 40}};
+  const MapGrid grid = makeMapGrid(areaOf(scenario->region), 3000, "utm");
+  const scenario::TerrainPtr terrain = loadTerrain(*scenario, areaOf(scenario->region));
+  const auto warningsAt = [&](double time_s) {
+    return computeCoverage(
+        scenario, terrain, grid,
+        {{kLow}, {Product::covered}, scenario::Quantity::detection_probability, 0.5, {time_s}}, {},
+        [](const CoverageMap&) {});
+  };
+  EXPECT_THAT(warningsAt(60), Contains(HasSubstr("the maps of this time have none of its jamming")));
+  EXPECT_THAT(warningsAt(20), Not(Contains(HasSubstr("none of its jamming"))));
+}
+
 TEST(Coverage, WarnsOfTimesWithoutAnActiveRadar) {
   auto scenario =
       std::make_shared<scenario::Scenario>(*scenario::loadScenario(test::shippedScenario("jacksboro.yaml")));
@@ -84,12 +101,14 @@ TEST(Coverage, WarnsOfTimesWithoutAnActiveRadar) {
                            {{kLow}, {Product::covered}, quantity, 0.5, std::move(times_s)}, {},
                            [](const CoverageMap&) {});
   };
-  EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, {0, 40}),
-              Contains("no radar is active at t = 40 s (active_s, or outside its track): the maps of this "
-                       "time are empty"));
-  EXPECT_THAT(warningsOf(scenario::Quantity::snr_db, {20, 60, 100}),
-              Contains("no radar is active at 2 of 3 times, first at t = 60 s (active_s, or outside its "
-                       "track): their maps are empty"));
+  EXPECT_THAT(
+      warningsOf(scenario::Quantity::detection_probability, {0, 40}),
+      Contains("no radar is active at t = 40 s (active_s, blink, or outside its track): the maps of this "
+               "time are empty"));
+  EXPECT_THAT(
+      warningsOf(scenario::Quantity::snr_db, {20, 60, 100}),
+      Contains("no radar is active at 2 of 3 times, first at t = 60 s (active_s, blink, or outside its "
+               "track): the maps of these times are empty"));
   const auto inactive = Contains(HasSubstr("is active"));
   EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, {0, 39}), Not(inactive));
   EXPECT_THAT(warningsOf(scenario::Quantity::power_density_dbwm2, {60}), Not(inactive))

@@ -86,6 +86,10 @@ TEST(Vertical, SLOW_ParabolicEquationIsNearProfile) {
   std::sort(differences_db.begin(), differences_db.end());
   EXPECT_LT(differences_db[differences_db.size() / 2], 1.0);
   EXPECT_LT(differences_db[differences_db.size() * 9 / 10], 4.0);  // nulls
+  const auto staircases =
+      std::count_if(diagram.warnings.begin(), diagram.warnings.end(),
+                    [](const std::string& text) { return text.find("staircase") != std::string::npos; });
+  EXPECT_EQ(staircases, 1) << "of both cuts, which have other figures";
 }
 
 // Over mountains the largest angle decides: with that of maps a point in the shadow was 20 dB and more too
