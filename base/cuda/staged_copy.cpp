@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <map>
+#include <mutex>
 #include <vector>
 
 #include "emscape/base/parallel.h"
@@ -14,16 +16,24 @@ constexpr std::size_t kChunk = std::size_t{2} << 20;
 constexpr int kChunks = 3;
 constexpr std::size_t kPiece = std::size_t{128} << 10;  ///< of a chunk, for one thread
 
-/// The pinned memory of the process. Allocating it takes milliseconds, so it is kept until the process ends.
+/// Pinned memory for the copies of one GPU, to which its events belong. Allocating it takes milliseconds, so
+/// it is kept until the process ends.
 class Stage {
  public:
   Stage() { check(cudaMallocHost(reinterpret_cast<void**>(&memory_), kChunk * kChunks), "cudaMallocHost"); }
   char* chunk(std::size_t n) { return memory_ + n % kChunks * kChunk; }
   Event& copied(std::size_t n) { return copied_[n % kChunks]; }
-  static Stage& get() {
-    static Stage* const stage = new Stage;
+  /// That of the calling thread's GPU.
+  static Stage& here() {
+    static std::mutex mutex;
+    static auto* const stages = new std::map<int, Stage*>;
+    const std::lock_guard lock(mutex);
+    Stage*& stage = (*stages)[currentDevice()];
+    if (stage == nullptr) stage = new Stage;
     return *stage;
   }
+
+  std::atomic<bool> is_used{false};
 
  private:
   char* memory_ = nullptr;
@@ -34,16 +44,17 @@ class Stage {
 /// task that copies.
 class Use {
  public:
-  Use() : has_stage_(!is_used_.exchange(true)) {}
+  Use() : stage_(Stage::here()), has_stage_(!stage_.is_used.exchange(true)) {}
   ~Use() {
-    if (has_stage_) is_used_ = false;
+    if (has_stage_) stage_.is_used = false;
   }
   Use(const Use&) = delete;
   Use& operator=(const Use&) = delete;
   bool hasStage() const { return has_stage_; }
+  Stage& stage() const { return stage_; }
 
  private:
-  static inline std::atomic<bool> is_used_{false};
+  Stage& stage_;
   bool has_stage_;
 };
 
@@ -74,7 +85,7 @@ void uploadStaged(void* to, std::size_t bytes,
     send(filled.data(), 0, bytes);  // pageable: returns when the memory was read
     return;
   }
-  Stage& stage = Stage::get();
+  Stage& stage = use.stage();
   for (std::size_t n = 0; n * kChunk < bytes; ++n) {
     const std::size_t begin = n * kChunk, end = std::min(begin + kChunk, bytes);
     char* const chunk = stage.chunk(n);
@@ -108,7 +119,7 @@ void downloadStaged(void* to, const void* from, std::size_t bytes, cudaStream_t 
     check(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
     return;
   }
-  Stage& stage = Stage::get();
+  Stage& stage = use.stage();
   const std::size_t chunks = (bytes + kChunk - 1) / kChunk;
   const auto begin = [&](std::size_t n) { return std::min(n * kChunk, bytes); };
   const auto start = [&](std::size_t n) {

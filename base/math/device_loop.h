@@ -12,6 +12,13 @@
 #define EMSCAPE_NOINLINE [[gnu::noinline]]
 #endif
 
+/// The same on the device alone.
+#if defined(__CUDACC__)
+#define EMSCAPE_DEVICE_CALL __noinline__
+#else
+#define EMSCAPE_DEVICE_CALL
+#endif
+
 /// Unrolls the next loop by a number on the device; 1: not at all.
 #if defined(__CUDA_ARCH__)
 #define EMSCAPE_PRAGMA(text) _Pragma(#text)

@@ -34,14 +34,17 @@ using propagation::DiffractionModel;
 using propagation::EffectiveHeights;
 using propagation::TerrainTrend;
 
-/// A separate call, so that its registers are not part of those of the columns.
+// Separate calls, so that their registers and their code are not part of those of the columns.
+EMSCAPE_NOINLINE EMSCAPE_HD inline float groundOf(const Station& station, const GroundPosts& ground,
+                                                  const FastInverse& path) {
+  return groundAt(station, ground, path);
+}
 EMSCAPE_NOINLINE EMSCAPE_HD inline float effectiveHeight_m(const Station& station, float height_msl_m,
                                                            double range_m) {
   return static_cast<float>(
       station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m), station.height_msl_m, range_m));
 }
 
-/// A separate call, too.
 EMSCAPE_NOINLINE EMSCAPE_HD inline float smoothEarthNu(const DiffractionModel<float>& model,
                                                        ColumnPosts& posts, float distance_m,
                                                        const EffectiveHeights<float>& heights) {
@@ -142,7 +145,7 @@ class Receivers {
                        float ground_msl_m)
       : task_(task),
         posts_(posts),
-        base_msl_m_(groundAt(task.station, task.ground, {0, path.sin_azimuth, path.cos_azimuth})),
+        base_msl_m_(groundOf(task.station, task.ground, {0, path.sin_azimuth, path.cos_azimuth})),
         distance_m_(static_cast<float>(path.distance_m)),
         ground_m_(ground_msl_m - base_msl_m_),
         tx_m_(DiffractionModel<float>::raised_m(task.model.tx_msl_m - base_msl_m_, 0)),
@@ -423,8 +426,9 @@ EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& g
   if (k >= end) return true;
   const GridColumn column = grid.columns[column_index];
   const FastInverse path = grid.coordinatesOf(task.station, column_index, segment);
-  const float ground_msl_m =
-      grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(task.station, task.ground, path);
+  const float ground_msl_m = grid.ground_msl_m != nullptr
+                                 ? grid.ground_msl_m[c]
+                                 : diffraction_detail::groundOf(task.station, task.ground, path);
   const AirLoss air = task.air;
   const propagation::TerminalClutter terminal = task.terminal;
   const PathEnds ends(air, terminal, static_cast<float>(path.distance_m), ground_msl_m);

@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "base/math/device_loop.h"
 #include "base/math/float_pair.h"
 #include "emfield/columns/station.h"
 #include "emscape/base/host_device.h"
@@ -162,7 +163,7 @@ class TerrainWalk {
     const int index = static_cast<int>(range_m * per_m_);
     return index < last_ ? index : last_;
   }
-  EMSCAPE_HD FastDirect positionAt(double range_m) const {
+  EMSCAPE_DEVICE_CALL EMSCAPE_HD FastDirect positionAt(double range_m) const {
     return fastDirect(station_.geodesy, sine_, cosine_, range_m);
   }
 
