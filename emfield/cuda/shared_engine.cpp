@@ -15,6 +15,14 @@ namespace {
 using cuda::DeviceEngine;
 using emscape::cuda::OnDevice;
 
+/// The GPU of a number: the sum of its digits to base `devices` (the Thue-Morse sequence), so that emitters
+/// that cost more than others are shared out evenly also where they stand in a regular order.
+int shareOf(int number, int devices) {
+  int sum = 0;
+  for (; number > 0; number /= devices) sum += number % devices;
+  return sum % devices;
+}
+
 class SharedEngine : public FieldEngine {
  public:
   SharedEngine(const FieldSetup& setup, int devices, int slots, volume::VoxelPrecision precision)
@@ -23,7 +31,7 @@ class SharedEngine : public FieldEngine {
       const OnDevice here(device);
       engines_.push_back(cuda::makeDeviceEngine(setup, slots, precision));
     }
-    for (int slot = 0; slot < own_slots_; ++slot) device_of_slot_.push_back(slot % devices);
+    for (int slot = 0; slot < own_slots_; ++slot) device_of_slot_.push_back(shareOf(slot, devices));
     std::vector<DeviceEngine*> others;
     for (int device = 1; device < devices; ++device) {
       cudaDeviceEnablePeerAccess(device, 0);  // without it copies pass through the host
@@ -105,7 +113,7 @@ class SharedEngine : public FieldEngine {
   /// @param emitter  decides for the slot that emitters share
   int deviceOf(int slot, int emitter) const {
     return slot < own_slots_ ? device_of_slot_[static_cast<std::size_t>(slot)]
-                             : emitter % static_cast<int>(engines_.size());
+                             : shareOf(emitter, static_cast<int>(engines_.size()));
   }
   void onEach(const std::function<void(int device, DeviceEngine& engine)>& body) {
     parallelFor(static_cast<int>(engines_.size()), 1, [&](int begin, int end) {
