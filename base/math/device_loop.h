@@ -12,7 +12,7 @@
 #define EMSCAPE_NOINLINE [[gnu::noinline]]
 #endif
 
-/// The same on the device alone.
+/// A call on the device; on the host the compiler chooses.
 #if defined(__CUDACC__)
 #define EMSCAPE_DEVICE_CALL __noinline__
 #else

@@ -15,12 +15,11 @@ namespace {
 using cuda::DeviceEngine;
 using emscape::cuda::OnDevice;
 
-/// The GPU of a number: the sum of its digits to base `devices` (the Thue-Morse sequence), so that emitters
-/// that cost more than others are shared out evenly also where they stand in a regular order.
-int shareOf(int number, int devices) {
-  int sum = 0;
-  for (; number > 0; number /= devices) sum += number % devices;
-  return sum % devices;
+/// The GPU of a number: in turn, from one that a hash of the round gives, so that emitters that cost more
+/// than others are shared out also where they stand in a regular order.
+int deviceFor(int number, int devices) {
+  const unsigned round = static_cast<unsigned>(number / devices) * 2654435769U;
+  return (number + static_cast<int>(round >> 16)) % devices;
 }
 
 class SharedEngine : public FieldEngine {
@@ -31,7 +30,7 @@ class SharedEngine : public FieldEngine {
       const OnDevice here(device);
       engines_.push_back(cuda::makeDeviceEngine(setup, slots, precision));
     }
-    for (int slot = 0; slot < own_slots_; ++slot) device_of_slot_.push_back(shareOf(slot, devices));
+    for (int slot = 0; slot < own_slots_; ++slot) device_of_slot_.push_back(deviceFor(slot, devices));
     std::vector<DeviceEngine*> others;
     for (int device = 1; device < devices; ++device) {
       cudaDeviceEnablePeerAccess(device, 0);  // without it copies pass through the host
@@ -113,7 +112,7 @@ class SharedEngine : public FieldEngine {
   /// @param emitter  decides for the slot that emitters share
   int deviceOf(int slot, int emitter) const {
     return slot < own_slots_ ? device_of_slot_[static_cast<std::size_t>(slot)]
-                             : shareOf(emitter, static_cast<int>(engines_.size()));
+                             : deviceFor(emitter, static_cast<int>(engines_.size()));
   }
   void onEach(const std::function<void(int device, DeviceEngine& engine)>& body) {
     parallelFor(static_cast<int>(engines_.size()), 1, [&](int begin, int end) {

@@ -62,17 +62,18 @@ class ColumnPosts {
     return true;
   }
 
-  /// Calls visit(range (m), height above mean sea level (m)) for some regular posts in their order: every
-  /// second one, of long paths about 200.
+  /// Calls visit(PathPost) for some regular posts in their order: every second one, of long paths some
+  /// hundred.
   template <class Visit>
   EMSCAPE_HD void eachOfSome(const Visit& visit) {
-    const int regular = ground_.lastBefore(path_.distance_m) + 1, step = larger(2, regular / 160);
+    const int regular = ground_.lastBefore(path_.distance_m) + 1, step = larger(2, regular / 640);
     const Chords of_path = chords();
     const double* const ranges_m = ground_.ranges_m;
     const float farthest_m = this->farthest_m();
     for (int n = 0, i = 1; n < of_path.count; ++n) {
       const double begin_m = n * of_path.length_m;
       const int end = n + 1 < of_path.count ? ground_.lastBefore(begin_m + of_path.length_m) + 1 : regular;
+      if (i >= end) continue;
       const TerrainChord& chord = chordOf(n);
       const bool is_simple =
           !ground_.is_smooth && !ground_.is_raised && chord.in_raster.corner_msl_m != nullptr;
@@ -90,7 +91,7 @@ class ColumnPosts {
         }
         if (!is_simple || std::isnan(height_msl_m))
           height_msl_m = ground_.is_smooth ? 0 : heightAt(chord, ranges_m[i]);
-        visit(range_m, height_msl_m);
+        visit(PathPost{range_m, height_msl_m});
       }
     }
   }
@@ -344,8 +345,9 @@ class ColumnPosts {
       tiles = TilesAlong(ground_, corner_msl_m, by_columns);
     }
     const bool is_raised = ground_.is_raised;
-    float other_m = others.range(), reached = 0, unknown = 0;  // part of the chord
-    int untried = 1;  // tiles to go through, after one that is not skipped
+    float other_m = others.range(), unknown = 0;
+    float reached = 0;  // part of the chord
+    int untried = 1;    // tiles to go through, after one that is not skipped
     do {
       float end = 2;  // as far as to the end of a tile
       while (tiles.areKnown() && most.n < most.lines.count) {

@@ -171,7 +171,9 @@ struct MapFolder::State {
     const std::string file = fmt::format("maps/{}.{}", study.command, name);
     const bool is_there = std::any_of(collections.begin(), collections.end(),
                                       [&](const Collection& other) { return other.file == file; });
-    if (!is_there) collections.push_back({file, format->make(folder / file, study)});
+    if (is_there) return;
+    earlier_outputs.add(file);
+    collections.push_back({file, format->make(folder / file, study)});
   }
 
   /// In seconds, and in UTC if the scenario has an epoch.
@@ -278,6 +280,7 @@ const MapRecord& MapFolder::add(const Map& map) {
   record.summary = summaryOf(*state.study.grid, map);
   const std::string name = "maps/" + fileNameOf(map);
   if (state.has_cog) {
+    for (const char* ending : {".tif.aux.xml", ".tif"}) state.earlier_outputs.add(name + ending);
     record.files.push_back(name + ".tif");
     writeGeoTiff(state.folder / record.files.back(), *state.study.grid, map, metadataOf(state.study, map));
   }
@@ -286,6 +289,7 @@ const MapRecord& MapFolder::add(const Map& map) {
     render::Image8 picture = state.pictureOf(map);
     if (state.has_png) {
       record.files.push_back(name + ".png");
+      state.earlier_outputs.add(record.files.back());
       const std::string png = render::withPngComment(render::encodePng(picture), state.changes());
       writeWhole(state.folder / record.files.back(), [&](std::ostream& out) { out << png; });
     }
@@ -322,7 +326,7 @@ void MapFolder::finish(const std::vector<std::string>& warnings, const std::stri
   const std::string inputs = studyJsonOf(state.study, state.folder, files);
   writeWhole({{state.folder / "study.json", [&](std::ostream& out) { out << inputs; }},
               {state.folder / "report.json", [&](std::ostream& out) { out << state.report_json; }}});
-  state.earlier_outputs.removeExcept({files.begin(), files.end()});
+  state.earlier_outputs.finish({files.begin(), files.end()});
 }
 
 const std::vector<MapRecord>& MapFolder::records() const {

@@ -60,6 +60,38 @@ TEST(ForeignFolder, SLOW_FilesOfTheUserThatAreNamedLikePartsAreKept) {
   }
 }
 
+TEST(ForeignFolder, FilesOfTheUserThatAreNamedLikeMapsAreNamedAndStay) {
+  const Arguments coverage{"coverage", quick(),      "--cell",  "2000",     "--heights", "agl:100", "--times",
+                           "0",        "--products", "covered", "--format", "cog,nc",    "-o"};
+  for (const std::string file :
+       {"covered_agl100m_t0s.tif", "covered_agl100m_t0s.tif.aux.xml", "coverage.nc"}) {
+    const TemporaryFolder folder;
+    folder.write("out/maps/" + file, "mine");
+    Arguments arguments = coverage;
+    arguments.push_back(folder / "out");
+    EXPECT_THAT(errorOfRun(arguments, 2),
+                AllOf(HasSubstr("out/maps/" + file + ": would be replaced"), HasSubstr("move")));
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"out/maps/" + file});
+    EXPECT_EQ(readFile(folder / ("out/maps/" + file)), "mine");
+  }
+}
+
+TEST(ForeignFolder, MapsOfEarlierAndOfUnfinishedRunsAreReplaced) {
+  const TemporaryFolder folder;
+  const Arguments coverage{"coverage", quick(),   "--cell", "2000",        "--heights",
+                           "agl:100",  "--times", "0",      "--products",  "covered",
+                           "--format", "cog,nc",  "-o",     folder / "out"};
+  runWell(coverage);
+  const std::vector<std::string> files = folder.files();
+  folder.write("out/maps/covered_agl100m_t0s.tif.aux.xml", "<PAMDataset/>");  // of a GIS program
+  runWell(coverage);
+  fs::remove(folder.path() / "out/study.json");  // as after a run that was killed
+  folder.write("out/maps/.unfinished",
+               "maps/covered_agl100m_t0s.tif\nmaps/covered_agl100m_t0s.tif.aux.xml\nmaps/coverage.nc\n");
+  runWell(coverage);
+  EXPECT_EQ(folder.files(), files);
+}
+
 TEST(ForeignFolder, SLOW_LinksAreRefusedByNameAndNothingIsWrittenThroughThem) {
   const std::vector<std::string> links_of[] = {
       {"out/series.lock"},

@@ -209,6 +209,33 @@ TEST(ColumnDiffraction, IsUnknownAcrossAHole) {
   expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), lossesOfTheCpu(setup, excess), 10);
 }
 
+TEST(ColumnDiffraction, BesideSingleVoidsIsThatOfTheCpu) {
+  const auto with_voids =
+      std::make_shared<const MadeTerrain>(44.5, -71.5, 1.2, [](double east_deg, double north_deg) {
+        const auto i = static_cast<int>(std::lround(east_deg * 1200)),
+                   j = static_cast<int>(std::lround(north_deg * 1200));
+        return i % 97 == 11 && j % 89 == 7 ? NAN
+                                           : 300 + 200 * std::sin(40 * east_deg) * std::cos(30 * north_deg);
+      });
+  const SeenField setup(propagation::PropagationModel::diffraction, 80e3, 15, 100e6, false,
+                        FrameKind::altitude, with_voids);
+  const EmitterExcess excess = planned(setup);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), lossesOfTheCpu(setup, excess), 10);
+}
+
+TEST(ColumnDiffraction, WithTheShareOfTheSeaByHeightIsThatOfTheCpu) {
+  const auto coast =
+      std::make_shared<const MadeTerrain>(44.5, -71.5, 1.9, [](double east_deg, double north_deg) {
+        return std::sin(260 * east_deg + 3 * std::sin(170 * north_deg)) > 0 ? 3 : 0;
+      });
+  SeenField setup(propagation::PropagationModel::diffraction, 140e3, 48, 30e6, false, FrameKind::altitude,
+                  coast);
+  setup.scenario->ground.sea_by_height = true;
+  setup.scenario->emitters[0].polarization = propagation::Polarization::vertical;
+  const EmitterExcess excess = planned(setup);
+  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), lossesOfTheCpu(setup, excess));
+}
+
 TEST(HighestPost, IsThatOfTheWholeRasterAndInfiniteWithVoids) {
   const scenario::TerrainView terrain = terrainOf(false)->view();
   const scenario::TerrainRaster& raster = terrain.rasters[0];
