@@ -6,11 +6,10 @@
 #include <cmath>
 #include <optional>
 
+#include "emfield/clutter/clutter_reach.h"
 #include "emfield/excess/clutter_text.h"
 #include "emfield/excess/elevation_cut.h"
 #include "emfield/excess/emitter_excess.h"
-#include "emfield/geometry/clutter_map.h"
-#include "emfield/geometry/clutter_reach.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "propagation/clear_air/climate.h"
@@ -173,10 +172,14 @@ std::vector<std::string> smoothSurfaceWarnings(const Scenario& scenario, const E
       emitter.name, model.name, surface_m, lowest_m)};
 }
 
+static bool hasSurfaceClutter(const Emitter& radar) {
+  return radar.clutter && radar.clutter->hasSurface();
+}
+
 std::vector<std::string> laterTripWarnings(const Scenario& scenario, const Emitter& radar,
                                            const Station& station) {
   constexpr double kWorthSaying = 1.05;
-  if (!hasClutterMap(radar) || !radar.waveform) return {};
+  if (!hasSurfaceClutter(radar) || !radar.waveform) return {};
   const double horizon_m =
       std::sqrt(2 * station.effective_earth_radius_m * std::max(station.height_msl_m, 0.0));
   const double repeat_m = radar.waveform->unambiguousRange_m();
@@ -191,7 +194,7 @@ std::vector<std::string> laterTripWarnings(const Scenario& scenario, const Emitt
 
 std::vector<std::string> laterTripWarnings(const Scenario& scenario, const Emitter& radar,
                                            const scenario::Terrain* terrain) {
-  if (!hasClutterMap(radar) || !radar.waveform) return {};
+  if (!hasSurfaceClutter(radar) || !radar.waveform) return {};
   const auto heightOf_m = [&](const scenario::TrackPoint& point) {
     const scenario::SitePosition& site = point.position;
     if (!site.height_agl_m) return site.height_msl_m ? *site.height_msl_m : *site.height_ellipsoid_m;

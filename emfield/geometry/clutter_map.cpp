@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emfield/clutter/clutter_reach.h"
 #include "emfield/excess/emitter_excess.h"
-#include "emfield/geometry/clutter_reach.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 #include "propagation/air/gases.h"
@@ -50,14 +50,6 @@ ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emit
 }
 
 }  // namespace
-
-double clutterReach_m(const scenario::Region& region, const Station& station) {
-  const Vec3d middle_m = {
-      0, 0,
-      region.size_m.z / 2 + (region.origin.kind == FrameKind::altitude ? region.origin.height_msl_m : 0)};
-  return length(toEcef(GeoFrame(region.origin).toGeodetic(middle_m)) - station.ecef_m) +
-         length(region.size_m) / 2;
-}
 
 double airLossAtSea_db_per_m(const scenario::Scenario& scenario, const scenario::Emitter& radar) {
   const propagation::EmitterInputs inputs = emitterInputs(scenario, radar);
