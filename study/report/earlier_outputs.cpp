@@ -72,15 +72,26 @@ void EarlierOutputs::add(const std::string& name) {
                             "move the file away",
                             (folder_ / name).string()));
   }
-  if (!unfinished_.insert(name).second) return;
+  if (unfinished_.insert(name).second) list();
+}
+
+void EarlierOutputs::list() const {
   writeWhole(folder_ / kUnfinished, [&](std::ostream& out) {
     for (const std::string& own : unfinished_) out << own << '\n';
   });
 }
 
-void EarlierOutputs::finish(const std::set<std::string>& written) const {
+void EarlierOutputs::finish(const std::set<std::string>& written) {
   std::error_code is_missing;
-  fs::remove(folder_ / kUnfinished, is_missing);
+  for (auto name = unfinished_.begin(); name != unfinished_.end();) {  // those of the earlier run
+    const bool remains = written.count(*name) == 0 && isFile(folder_ / *name);
+    name = remains ? std::next(name) : unfinished_.erase(name);
+  }
+  if (unfinished_.empty()) {
+    fs::remove(folder_ / kUnfinished, is_missing);
+  } else {
+    list();
+  }
   for (const Json& output : outputs_) {
     const std::string name = output.at("file");
     if (!isMap(name) || written.count(name) > 0) continue;

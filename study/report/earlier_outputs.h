@@ -8,8 +8,9 @@
 
 namespace emscape::study {
 
-/// The outputs that a folder's study.json lists, and those of a run that did not reach its end: until then
-/// maps/.unfinished lists them, a name a line. None if these files are missing or have another form.
+/// The outputs that a folder's study.json lists, and those of a run that did not reach its end:
+/// maps/.unfinished lists them, a name a line, until they are written again or gone. None if these files are
+/// missing or have another form.
 class EarlierOutputs {
  public:
   explicit EarlierOutputs(const std::filesystem::path& folder);
@@ -26,10 +27,11 @@ class EarlierOutputs {
   /// After study.json was written: removes those in the folder's maps/ that were not written again and still
   /// have the listed size and checksum.
   /// @param written  relative to the folder
-  void finish(const std::set<std::string>& written) const;
+  void finish(const std::set<std::string>& written);
 
  private:
   bool isOwn(const std::string& name) const;
+  void list() const;
 
   std::filesystem::path folder_;
   nlohmann::ordered_json outputs_;    ///< as digestJson() makes them

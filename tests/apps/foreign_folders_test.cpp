@@ -90,6 +90,10 @@ TEST(ForeignFolder, MapsOfEarlierAndOfUnfinishedRunsAreReplaced) {
                "maps/covered_agl100m_t0s.tif\nmaps/covered_agl100m_t0s.tif.aux.xml\nmaps/coverage.nc\n");
   runWell(coverage);
   EXPECT_EQ(folder.files(), files);
+  folder.write("out/maps/value_agl200m_t0s.tif", "of the run that was killed");
+  folder.write("out/maps/.unfinished", "maps/value_agl200m_t0s.tif\n");
+  runWell(coverage);
+  EXPECT_EQ(readFile(folder / "out/maps/.unfinished"), "maps/value_agl200m_t0s.tif\n");
 }
 
 TEST(ForeignFolder, SLOW_LinksAreRefusedByNameAndNothingIsWrittenThroughThem) {
