@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -39,7 +40,7 @@ TEST(LivePrograms, AnExerciseOfOneProgramIsTheFieldOfTheOther) {
   const std::string port = freePort(), record = folder / "seen.pcap";
   RunningProgram live({"live", "--dis", port, "--base", quick(), "--json", "--duration", "8", "-o",
                        folder / "now", "--record", record});
-  pause(1500);
+  live.waitForALine();
   const ProgramResult played = runWell(
       {"play", shippedScenario("jamming.yaml"), "--dis-out", port, "--set", "duration_s=2", "--json"});
   const ProgramResult result = live.wait();
@@ -52,7 +53,9 @@ TEST(LivePrograms, AnExerciseOfOneProgramIsTheFieldOfTheOther) {
         "entities", "emitters", "unmatched", "fields", "field_ms", "latency_ms", "age_s", "trouble"})
     EXPECT_TRUE(last.contains(key)) << key;
   EXPECT_EQ(last["pdus"], json::parse(played.out)["sent"]);
-  EXPECT_GT(last["entities"], 1);
+  int entities = 0;  // at the end of a slow run the entities may be forgotten again
+  for (const json& line : lines) entities = std::max(entities, line["entities"].get<int>());
+  EXPECT_GT(entities, 1);
   EXPECT_GT(last["fields"], 1);
   EXPECT_EQ(last["bad"], 0);
   EXPECT_EQ(last["lost"], 0);
@@ -67,7 +70,7 @@ TEST(LivePrograms, SLOW_GoOnRecordingWhileTheFieldCannotBeWritten) {
   std::filesystem::create_directories(folder / "now/live.vdb");
   RunningProgram live({"live", "--dis", port, "--base", quick(), "--json", "--duration", "7", "-o",
                        folder / "now", "--record", record});
-  pause(1500);
+  live.waitForALine();
   EXPECT_EQ(run({"play", shippedScenario("jamming.yaml"), "--dis-out", port, "--set", "duration_s=2"}).status,
             0);
   const ProgramResult result = live.wait();

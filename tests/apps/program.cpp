@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 namespace emscape::test {
 namespace {
@@ -35,6 +37,12 @@ RunningProgram::RunningProgram(const Arguments& arguments, const std::string& sh
 
 void RunningProgram::signal(int number) const {
   kill(process_, number);
+}
+
+void RunningProgram::waitForALine() const {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (readFile(output_ / "out").find('\n') == std::string::npos && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
 }
 
 ProgramResult RunningProgram::wait() {

@@ -25,6 +25,8 @@ class RunningProgram {
   /// @param shell_prefix  shell commands that precede it, such as limits; may be empty
   explicit RunningProgram(const Arguments& arguments, const std::string& shell_prefix = "");
   void signal(int number) const;
+  /// Waits for the first line of its standard output, for a minute at most.
+  void waitForALine() const;
   ProgramResult wait();
 
  private:
