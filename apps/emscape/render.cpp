@@ -350,6 +350,7 @@ RealTimeOptions realTimeOptionsOf(const RenderOptions& options, const ViewState&
   loop.speed = options.speed;
   loop.duration_s = options.duration_s;
   loop.orbit_rate_deg_s = options.orbit_rate_deg_s;
+  loop.whole_fields = view.pattern == render::Pattern::full;
   loop.verify = options.verify;
   loop.keep_events = keeps_events;
   loop.controller.pattern = view.pattern;

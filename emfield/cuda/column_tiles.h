@@ -37,20 +37,21 @@ __device__ inline void note(const ExcessOutputs& to, int column, unsigned warnin
 constexpr int kTileX = 16, kTileY = 8, kWarpX = 8, kWarpY = 4;
 static_assert(kTileX * kTileY == kColumnThreads);
 
-/// Tiles of kTileX x kTileY columns: over a grid's rows, of all tasks.
+/// Tiles of kTileX x kTileY columns: over a grid's rows, of all tasks. Of a part of the columns
+/// (ExcessGrid::part, without `known`) those of the part alone.
 class Tiles {
  public:
   /// @param row  columns along x
-  Tiles(const ExcessGrid& grid, int row, int tasks) : row_(row) {
-    const int rows = static_cast<int>(grid.column_count) / row;
-    along_x_ = (row + kTileX - 1) / kTileX;
-    along_y_ = (rows + kTileY - 1) / kTileY;
+  Tiles(const ExcessGrid& grid, int row, int tasks)
+      : step_(grid.part.step), row_(row), rows_(static_cast<int>(grid.column_count) / row) {
+    along_x_ = (linesOf(row_) + kTileX - 1) / kTileX;
+    along_y_ = (linesOf(rows_) + kTileY - 1) / kTileY;
     count_ = along_x_ * along_y_ * tasks;
   }
   int count() const { return count_; }
   /// Calls f(task, column, thread), each thread for some columns.
   template <class Function>
-  __device__ void eachColumn(const ExcessGrid& grid, const Function& f) const {
+  __device__ void eachColumn(const Function& f) const {
     const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
     constexpr int kWarpsX = kTileX / kWarpX;
     const int in_tile_x = warp % kWarpsX * kWarpX + lane % kWarpX;
@@ -59,13 +60,16 @@ class Tiles {
     for (int tile = static_cast<int>(blockIdx.x); tile < count_; tile += static_cast<int>(gridDim.x)) {
       const int x = tile % along_x_ * kTileX + in_tile_x;
       const int y = tile / along_x_ % along_y_ * kTileY + in_tile_y;
-      if (x >= row_ || static_cast<std::size_t>(y) * row_ >= grid.column_count) continue;
-      f(tile / (along_x_ * along_y_), y * row_ + x, thread);
+      if (x >= linesOf(row_) || y >= linesOf(rows_)) continue;
+      f(tile / (along_x_ * along_y_), min(y * step_, rows_ - 1) * row_ + min(x * step_, row_ - 1), thread);
     }
   }
 
  private:
-  int row_, along_x_, along_y_, count_;
+  /// Every step-th of some columns and the last one.
+  EMSCAPE_HD int linesOf(int columns) const { return (columns - 1 + step_ - 1) / step_ + 1; }
+
+  int step_, row_, rows_, along_x_, along_y_, count_;
 };
 
 }  // namespace emscape::emfield::cuda

@@ -8,6 +8,7 @@
 #include "base/cuda/staged_copy.h"
 #include "emfield/columns/column_geometry.h"
 #include "emfield/cuda/device_positions.h"
+#include "emfield/geometry/emitter_geometry.h"
 #include "emscape/base/parallel.h"
 #include "propagation/diffraction/model.h"
 #include "propagation/parabolic_equation/field_march.h"
@@ -120,6 +121,9 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
     work.clutter->ground.range_count = static_cast<int>(farther_m.size());
     if (farther_m.size() > work.ranges_m.size()) work.ranges_m = std::move(farther_m);
   }
+  work.can_interpolate =
+      (work.has_shadow || (work.model && isDiffraction(*work.model))) &&
+      EmitterGeometry::interpolates(scenario, emitter, setup_.columns, setup_.needs[request.emitter]);
   const double far_m = setup_.far_field_m[request.emitter];
   work.task.station = station;
   work.task.near2_m2 = static_cast<float>(far_m * far_m);
@@ -261,9 +265,20 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
                         cudaMemcpyDeviceToHost, stream),
         "cudaMemcpyAsync from the GPU");
   check(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
+  const ColumnPart part{requests.front().part.step, 0};
+  const auto interpolated =
+      std::count_if(works.begin(), works.end(), [](const Work& work) { return work.can_interpolate; });
+  const double every_column_ms =
+      interpolated == 0
+          ? 0
+          : part_timer_.elapsed_ms() / part.fraction(setup_.grid.dims) / static_cast<double>(interpolated);
   std::vector<GeometryResult> all;
   for (std::size_t r = 0; r < works.size(); ++r) {
     GeometryResult found;
+    if (works[r].can_interpolate) {
+      found.column_step = part.step;
+      found.every_column_ms = every_column_ms;
+    }
     found.unknown_columns = counts[r].unknown_columns;
     found.warnings = counts[r].warnings;
     found.near_voxels = static_cast<long long>(counts[r].near_voxels);
@@ -287,8 +302,15 @@ void DeviceGeometry::computeUnmarched(const std::vector<GeometryRequest>& reques
   placed_.record(stream);
   clock.begin(stream);
   placeTables(works, stream);
-  findShadows(works, stream);
-  fillDiffractions(requests, works, stream);
+  findShadows(works, excess_grid_, false, stream);
+  fillDiffractions(requests, works, excess_grid_, false, stream);
+  ExcessGrid part = excess_grid_;
+  part.part.step = requests.front().part.step;
+  part_timer_.begin(stream);
+  findShadows(works, part, true, stream);
+  fillDiffractions(requests, works, part, true, stream);
+  part_timer_.end(stream);
+  if (part.part.step > 1) interpolate(works, part, stream);
   for (const Work& work : works) {
     if (work.is_equation || !work.model || isDiffraction(*work.model)) continue;
     fillExcess(*work.model, work.task.station, excess_grid_, work.ground, work.excess, scratch(), stream);
@@ -299,12 +321,14 @@ void DeviceGeometry::computeUnmarched(const std::vector<GeometryRequest>& reques
   clock.end(&StageTimes::excess_ms, stream);
 }
 
-void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t stream) {
+/// @param of_part  of those that can interpolate, else of the others
+void DeviceGeometry::findShadows(const std::vector<Work>& works, const ExcessGrid& grid, bool of_part,
+                                 cudaStream_t stream) {
   std::vector<DeviceShadowTask> shadows;
   std::size_t all_ranges = 0;
   int most_ranges = 0;
   for (const Work& work : works) {
-    if (!work.has_shadow) continue;
+    if (!work.has_shadow || work.can_interpolate != of_part) continue;
     shadows.push_back({{work.task.station, work.ground, nullptr, highest_post_m_},
                        nullptr,
                        work.task.shadow_edge_m,
@@ -313,20 +337,23 @@ void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t st
     most_ranges = std::max(most_ranges, work.ground.range_count);
   }
   if (shadows.empty()) return;
-  RangeTerms<float>* terms = terms_.atLeast(all_ranges);
+  RangeTerms<float>* terms = terms_[of_part].atLeast(all_ranges);
   for (DeviceShadowTask& shadow : shadows) {
     shadow.task.terms = shadow.terms = terms;
     terms += shadow.task.ground.range_count;
   }
-  findShadowEdges(shadows_.send(shadows, stream), static_cast<int>(shadows.size()), most_ranges, excess_grid_,
-                  columns_.row, stream);
+  findShadowEdges(shadows_[of_part].send(shadows, stream), static_cast<int>(shadows.size()), most_ranges,
+                  grid, columns_.row, stream);
 }
 
+/// @param of_part  as findShadows()
 void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& requests,
-                                      const std::vector<Work>& works, cudaStream_t stream) {
+                                      const std::vector<Work>& works, const ExcessGrid& grid, bool of_part,
+                                      cudaStream_t stream) {
   std::vector<DeviceDiffractionTask> tasks;
   for (std::size_t r = 0; r < works.size(); ++r) {
     const Work& work = works[r];
+    if (work.can_interpolate != of_part) continue;
     if (work.is_equation ? setup_.terrain == nullptr : !work.model) continue;
     // Of models that read the diffraction beside their own excess it is without air and refraction.
     DiffractionTask task{{}, AirLoss{}, work.task.station, work.ground, work.excess.out};
@@ -353,8 +380,22 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
     tasks.push_back({task, work.excess.counts});
   }
   if (tasks.empty()) return;
-  fillDiffraction(diffraction_.send(tasks, stream), static_cast<int>(tasks.size()), excess_grid_,
+  fillDiffraction(diffraction_[of_part].send(tasks, stream), static_cast<int>(tasks.size()), grid,
                   columns_.row, stream);
+}
+
+/// The columns that are not of the part.
+void DeviceGeometry::interpolate(const std::vector<Work>& works, const ExcessGrid& grid,
+                                 cudaStream_t stream) {
+  std::vector<DevicePartTask> tasks;
+  for (const Work& work : works) {
+    if (!work.can_interpolate) continue;
+    const bool has_codes = work.model && isDiffraction(*work.model);
+    tasks.push_back(
+        {has_codes ? work.excess.out.excess.codes : nullptr, work.task.shadow_edge_m, work.task.counts});
+  }
+  if (tasks.empty()) return;
+  interpolateColumns(parts_.send(tasks, stream), static_cast<int>(tasks.size()), grid, columns_.row, stream);
 }
 
 /// PeOthers::diffraction of an equation before its plan.
@@ -399,9 +440,10 @@ ScratchMemory DeviceGeometry::scratch() {
 std::size_t DeviceGeometry::bytes() const {
   const auto bytesOf = [](const auto& buffer) { return buffer.size() * sizeof(*buffer.data()); };
   std::size_t bytes = bytesOf(grid_columns_) + bytesOf(position_columns_) + bytesOf(t_m_) +
-                      bytesOf(first_valid_k_) + bytesOf(tasks_) + bytesOf(ranges_m_) + bytesOf(shadows_) +
-                      bytesOf(terms_) + bytesOf(diffraction_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
-                      bytesOf(model_tables_) + bytesOf(unknown_);
+                      bytesOf(first_valid_k_) + bytesOf(tasks_) + bytesOf(ranges_m_) + bytesOf(parts_) +
+                      bytesOf(scratch_) + bytesOf(ground_msl_m_) + bytesOf(model_tables_) + bytesOf(unknown_);
+  for (const int of : {0, 1})
+    bytes += bytesOf(shadows_[of]) + bytesOf(terms_[of]) + bytesOf(diffraction_[of]);
   if (setup_.columns.on_device != nullptr) bytes += setup_.columns.on_device->bytes();
   for (const std::unique_ptr<Marcher>& marcher : marchers_) {
     if (marcher == nullptr) continue;

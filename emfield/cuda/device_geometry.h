@@ -12,6 +12,7 @@
 #include "emfield/cuda/diffraction_kernels.h"
 #include "emfield/cuda/excess_kernels.h"
 #include "emfield/cuda/geometry_kernels.h"
+#include "emfield/cuda/interpolation_kernels.h"
 #include "emfield/cuda/stage_clock.h"
 #include "emfield/solver/field_engine.h"
 #include "propagation/cuda/field_march_cuda.h"
@@ -55,6 +56,7 @@ class DeviceGeometry {
     ExcessOutputs excess;
     std::optional<ClutterMapTask> clutter;  ///< its ground on the device, from place() on
     bool has_excess = false, has_shadow = false, has_reflected_ray = false, has_mechanisms = false;
+    bool can_interpolate = false;  ///< a part of its columns suffices: see GeometryRequest::part
   };
 
   /// Marches of one emitter after another, on a separate stream.
@@ -73,9 +75,10 @@ class DeviceGeometry {
   void placeTables(std::vector<Work>& works, cudaStream_t stream);
   void computeUnmarched(const std::vector<GeometryRequest>& requests, std::vector<Work>& works,
                         cudaStream_t stream, StageClock& clock);
-  void findShadows(const std::vector<Work>& works, cudaStream_t stream);
+  void findShadows(const std::vector<Work>& works, const ExcessGrid& grid, bool of_part, cudaStream_t stream);
   void fillDiffractions(const std::vector<GeometryRequest>& requests, const std::vector<Work>& works,
-                        cudaStream_t stream);
+                        const ExcessGrid& grid, bool of_part, cudaStream_t stream);
+  void interpolate(const std::vector<Work>& works, const ExcessGrid& grid, cudaStream_t stream);
   DiffractionExcess besideEquation(const GeometryRequest& request, const Work& work) const;
   void startMarch(Work& work, Marcher& marcher);
   void readMarch(const Work& work, Marcher& marcher, cudaStream_t stream, StageClock& clock);
@@ -114,9 +117,11 @@ class DeviceGeometry {
   emscape::cuda::Buffer<LocateTask> tasks_;
   emscape::cuda::Buffer<double> ranges_m_;
   emscape::cuda::Buffer<float> model_tables_;
-  emscape::cuda::Buffer<DeviceShadowTask> shadows_;
-  emscape::cuda::Buffer<RangeTerms<float>> terms_;
-  emscape::cuda::Buffer<DeviceDiffractionTask> diffraction_;
+  emscape::cuda::Buffer<DeviceShadowTask> shadows_[2];  ///< of all columns; of a part that can be left out
+  emscape::cuda::Buffer<RangeTerms<float>> terms_[2];
+  emscape::cuda::Buffer<DeviceDiffractionTask> diffraction_[2];
+  emscape::cuda::Buffer<DevicePartTask> parts_;
+  emscape::cuda::Timer part_timer_;  ///< of the columns that can be left out
   emscape::cuda::Buffer<double> scratch_;
   emscape::cuda::Buffer<GeometryCounts> counts_;
   emscape::cuda::Buffer<std::uint8_t> unknown_;

@@ -12,7 +12,7 @@ template <int kReceivers>
 __global__ void __launch_bounds__(kColumnThreads, 4)
     diffractionKernel(const DeviceDiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
                       const __grid_constant__ Tiles tiles) {
-  tiles.eachColumn(grid, [&](int number, int c, int) {
+  tiles.eachColumn([&](int number, int c, int) {
     const DiffractionTask& task = tasks[number].task;
     const ExcessOutputs to{task.out, tasks[number].counts};
     const auto column = static_cast<std::size_t>(c);

@@ -92,7 +92,7 @@ __device__ void fillSegment(const EquationTask& task, const ExcessGrid& grid, in
 __global__ void __launch_bounds__(kColumnThreads)
     equationKernel(const __grid_constant__ EquationTask task, const __grid_constant__ ExcessGrid grid,
                    const __grid_constant__ SightMemory memory, const __grid_constant__ Tiles tiles) {
-  tiles.eachColumn(grid, [&](int, int c, int thread) {
+  tiles.eachColumn([&](int, int c, int thread) {
     if (grid.isLeftOut(static_cast<std::size_t>(c))) {
       for (int k = 0; k < grid.layers; ++k) task.to.out.excess.set(k * grid.column_count + c, 0);
       return;

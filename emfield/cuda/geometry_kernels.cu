@@ -42,7 +42,7 @@ __global__ void termsKernel(const DeviceShadowTask* tasks) {
 __global__ void __launch_bounds__(kColumnThreads)
     edgesKernel(const DeviceShadowTask* tasks, const __grid_constant__ ExcessGrid grid,
                 const __grid_constant__ Tiles tiles) {
-  tiles.eachColumn(grid, [&](int number, int column, int) {
+  tiles.eachColumn([&](int number, int column, int) {
     const auto c = static_cast<std::size_t>(column);
     if (grid.isLeftOut(c)) return;
     const DeviceShadowTask& shadow = tasks[number];

@@ -52,7 +52,10 @@ class SharedEngine : public FieldEngine {
       }
       if (own.empty()) return;
       std::vector<GeometryResult> found = engine.computeGeometry(own);
-      for (std::size_t i = 0; i < found.size(); ++i) results[numbers[i]] = std::move(found[i]);
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        found[i].every_column_ms /= static_cast<double>(engines_.size());  // at the same time as the others
+        results[numbers[i]] = std::move(found[i]);
+      }
     });
     return results;
   }

@@ -38,7 +38,7 @@ struct ExcessGrid {
   /// Number of segments of a tilted column, each above one point of the ground; 1 for vertical columns.
   int segments = 1;
   Dims dims;        ///< of the grid
-  ColumnPart part;  ///< columns that are filled; on the CPU
+  ColumnPart part;  ///< columns that are filled; on a GPU by `diffraction` and `horizon`, without `known`
 
   EMSCAPE_HD int firstLayer(int segment) const {
     return static_cast<int>(static_cast<long long>(layers) * segment / segments);

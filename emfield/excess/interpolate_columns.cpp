@@ -12,31 +12,25 @@ namespace {
 
 /// The lines of the part in one direction.
 struct PartLines {
-  std::vector<int> at;        ///< their indices, ascending
-  std::vector<int> below;     ///< per index: the last line before or at it, but not the last of all
-  std::vector<float> weight;  ///< per index: of the line after `below`, 0..1
-  std::vector<char> is_line;  ///< per index
+  std::vector<int> at;              ///< their indices, ascending
+  std::vector<LinesAround> around;  ///< per index
 
   PartLines(int count, int step) {
-    for (int i = 0; i < count - 1; i += step) at.push_back(i);
-    at.push_back(count - 1);
-    for (int i = 0, line = 0; i < count; ++i) {
-      while (line + 2 < static_cast<int>(at.size()) && at[line + 1] <= i) ++line;
-      below.push_back(line);
-      weight.push_back(at.size() < 2
-                           ? 0.0f
-                           : static_cast<float>(i - at[line]) / static_cast<float>(at[line + 1] - at[line]));
-      is_line.push_back(i % step == 0 || i == count - 1 ? 1 : 0);
+    for (int i = 0; i < count; ++i) {
+      around.emplace_back(i, count, step);
+      if (around.back().is_line) at.push_back(i);
     }
+    step_ = step;
   }
-  int after(int i) const { return std::min(below[i] + 1, static_cast<int>(at.size()) - 1); }
-};
+  /// Numbers of the lines below and after an index, in `at`.
+  int below(int i) const { return around[i].below / step_; }
+  int after(int i) const { return below(i) + (around[i].after > around[i].below ? 1 : 0); }
+  bool isLine(int i) const { return around[i].is_line; }
+  int count() const { return static_cast<int>(around.size()); }
 
-__attribute__((always_inline)) inline float between(float a, float b, float weight) {
-  const float mixed = a + weight * (b - a);
-  const float nearer = weight < 0.5f ? a : b;
-  return std::fabs(mixed) < HUGE_VALF ? mixed : nearer;  // false for NaN
-}
+ private:
+  int step_;
+};
 
 EMSCAPE_SIMD_CLONES void mixRows(const float* a, const float* b, float weight, int count, float* out) {
 #pragma omp simd
@@ -45,10 +39,7 @@ EMSCAPE_SIMD_CLONES void mixRows(const float* a, const float* b, float weight, i
 
 EMSCAPE_SIMD_CLONES void storeCodes(const float* values, int count, ExcessCode* codes) {
 #pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    const float rounded = values[i] + (values[i] < 0 ? -0.5f : 0.5f);
-    codes[i] = values[i] == values[i] ? static_cast<ExcessCode>(static_cast<int>(rounded)) : kUnknownExcess;
-  }
+  for (int i = 0; i < count; ++i) codes[i] = codeBetween(values[i]);
 }
 
 /// Fills one layer.
@@ -56,25 +47,25 @@ EMSCAPE_SIMD_CLONES void storeCodes(const float* values, int count, ExcessCode* 
 /// @param store(y, values)    takes a row
 template <class ValueAt, class Store>
 void fillLayer(const PartLines& columns, const PartLines& rows, const ValueAt& valueAt, const Store& store) {
-  const int width = static_cast<int>(columns.below.size()), height = static_cast<int>(rows.below.size());
+  const int width = columns.count(), height = rows.count();
   std::vector<float> lines(columns.at.size()), low(width), high(width), out(width);
   const auto read = [&](int y, std::vector<float>& row) {
     for (std::size_t i = 0; i < lines.size(); ++i) lines[i] = valueAt(columns.at[i], y);
     for (int x = 0; x < width; ++x)
-      row[x] = between(lines[columns.below[x]], lines[columns.after(x)], columns.weight[x]);
+      row[x] = between(lines[columns.below(x)], lines[columns.after(x)], columns.around[x].weight);
   };
   int of_low = -1;
   for (int y = 0; y < height; ++y) {
-    if (rows.below[y] != of_low) {
-      if (of_low >= 0 && rows.below[y] == of_low + 1) {
+    if (rows.below(y) != of_low) {
+      if (of_low >= 0 && rows.below(y) == of_low + 1) {
         std::swap(low, high);
       } else {
-        read(rows.at[rows.below[y]], low);
+        read(rows.around[y].below, low);
       }
-      of_low = rows.below[y];
-      read(rows.at[rows.after(y)], high);
+      of_low = rows.below(y);
+      read(rows.around[y].after, high);
     }
-    mixRows(low.data(), high.data(), rows.weight[y], width, out.data());
+    mixRows(low.data(), high.data(), rows.around[y].weight, width, out.data());
     store(y, out.data());
   }
 }
@@ -87,12 +78,12 @@ void interpolateColumnsCpu(const ExcessGrid& grid, const ExcessOutput& out) {
   const auto indexOf = [width](int x, int y) { return static_cast<std::size_t>(y) * width + x; };
   // Copies what the part does not contain.
   const auto storeOthers = [&](int y, const auto* values, auto* row) {
-    if (!rows.is_line[y]) {
+    if (!rows.isLine(y)) {
       std::copy_n(values, width, row);
       return;
     }
     for (int x = 0; x < width; ++x) {
-      if (!columns.is_line[x]) row[x] = values[x];
+      if (!columns.isLine(x)) row[x] = values[x];
     }
   };
   fillLayer(
@@ -102,14 +93,7 @@ void interpolateColumnsCpu(const ExcessGrid& grid, const ExcessOutput& out) {
   parallelFor(grid.layers, 1, [&](int begin, int end) {
     std::vector<ExcessCode> codes(width);
     for (int k = begin; k < end; ++k) {
-      const auto valueAt = [&](int x, int y) {
-        const std::size_t column = indexOf(x, y);
-        if (grid.isLeftOut(column)) return NAN;
-        const int above = std::min(std::max(k, grid.firstValid(column)), grid.layers - 1);
-        const ExcessCode code =
-            out.excess.codes[static_cast<std::size_t>(above) * grid.column_count + column];
-        return code == kUnknownExcess ? NAN : static_cast<float>(code);
-      };
+      const auto valueAt = [&](int x, int y) { return partValue(grid, out.excess.codes, indexOf(x, y), k); };
       // The rows of the part are read in layers above this one, too: only others are written.
       fillLayer(columns, rows, valueAt, [&](int y, const float* values) {
         storeCodes(values, width, codes.data());

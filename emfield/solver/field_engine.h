@@ -32,8 +32,8 @@ struct GeometryRequest {
   int emitter = 0;
   int slot = 0;
   scenario::EmitterState state;
-  /// The columns to compute; those that are known are in the slot, from the same inputs. An engine may
-  /// compute all of them.
+  /// The columns to compute, with one step for all requests; those that are known are in the slot, from the
+  /// same inputs. An engine may compute all of them.
   ColumnPart part = {};
 };
 

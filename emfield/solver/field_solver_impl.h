@@ -52,7 +52,6 @@ struct FieldSolver::Impl {
   std::vector<volume::Volume> volumes;
   PatternReaches reaches;
   ColumnPace pace;
-  double geometry_ms = 0;  ///< of this update
 
   /// Number of emitters, counted from the first, whose sum is in the engine's static accumulators.
   int static_count = 0;
@@ -102,6 +101,7 @@ struct FieldSolver::Impl {
   void findCombined(const scenario::Snapshot& snapshot, Changes& changes);
   void findProducts(Changes& changes);
   void chooseStep(const std::vector<int>& moved);
+  double columns_ms(const std::vector<int>& computed) const;
   ColumnPart partOf(int e, bool into_scratch) const;
   void computeGeometry(const std::vector<int>& chosen, bool into_scratch);
   void takeGeometry(int e, GeometryResult found);

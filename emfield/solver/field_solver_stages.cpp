@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <set>
 
-#include "base/stopwatch.h"
 #include "base/text/count_text.h"
 #include "emfield/channels/categories.h"
 #include "emfield/excess/emitter_excess.h"
@@ -42,6 +41,16 @@ void FieldSolver::Impl::chooseStep(const std::vector<int>& moved) {
   pace.choose(known == 0 ? 0 : known_ms * static_cast<double>(moved.size()) / known);
 }
 
+/// Time of the columns of some emitters that were just computed.
+double FieldSolver::Impl::columns_ms(const std::vector<int>& computed) const {
+  double ms = 0;
+  for (int e : computed) {
+    const ColumnPart part{emitters[e].geometry_result.column_step, 0};
+    ms += emitters[e].every_column_ms * part.fraction(setup.grid.dims);
+  }
+  return ms;
+}
+
 /// The columns of an emitter that are computed now.
 ColumnPart FieldSolver::Impl::partOf(int e, bool into_scratch) const {
   const EmitterCache& cache = emitters[e];
@@ -54,7 +63,6 @@ ColumnPart FieldSolver::Impl::partOf(int e, bool into_scratch) const {
 /// Computes the geometry of some emitters, into their own slots or the slot of uncached emitters.
 void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool into_scratch) {
   if (chosen.empty()) return;
-  Stopwatch watch;
   const auto compute = [&](std::size_t begin, std::size_t end) {
     const auto count = static_cast<double>(chosen.size());
     const Emitter& emitter = setup.scenario->emitters[chosen[begin]];
@@ -78,7 +86,6 @@ void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool int
   } else {
     for (std::size_t i = 0; i < chosen.size(); ++i) compute(i, i + 1);
   }
-  geometry_ms += watch.lap_ms();
 }
 
 void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {

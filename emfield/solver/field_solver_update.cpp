@@ -40,7 +40,6 @@ bool isAny(const std::vector<bool>& flags) {
 FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::optional<FieldPlan> edited) {
   engine->resetTimes();
   Stopwatch watch;
-  geometry_ms = 0;
   Changes changes;
   changes.is_edited = edited.has_value();
   changes.all = is_first || is_stale;
@@ -72,7 +71,7 @@ FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::
     volume.setInfo(std::move(info));
   }
   is_first = is_stale = has_other_quantities = false;
-  if (!changes.report.moved.empty()) pace.rest_ms = watch.lap_ms() - geometry_ms;
+  if (!changes.report.moved.empty()) pace.rest_ms = watch.lap_ms() - columns_ms(changes.report.moved);
   return changes.report;
 }
 

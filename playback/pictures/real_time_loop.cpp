@@ -46,7 +46,7 @@ RealTimeLoop::~RealTimeLoop() {
 
 RealTimeReport RealTimeLoop::play(const std::function<void(const RealTimeEvent&)>& done) {
   done_ = done;
-  beginField(0);
+  beginField(0, true);
   pending_ = field_.take();
   rehearse();
   start_ms_ = clock_.now_ms();
@@ -116,11 +116,22 @@ void RealTimeLoop::waitUntil(double time_ms) {
   clock_.waitUntil(start_ms_ + stood_still_ms_ + until_ms, event_);
 }
 
-void RealTimeLoop::beginField(int step) {
+/// Time of a field with which each step is shown in time; 0: as long as it takes.
+double RealTimeLoop::fieldGoal_ms() const {
+  const int last = source_.count() - 1;
+  if (options_.whole_fields || last == 0) return 0;
+  const double apart_ms = (source_.time_s(last) - source_.time_s(0)) / last / options_.speed * 1000;
+  const double between_ms = std::max(period_ms_, apart_ms);
+  return std::max(between_ms / 4, between_ms - drawing_ms_);
+}
+
+/// @param is_whole  with all columns
+void RealTimeLoop::beginField(int step, bool is_whole) {
   event_.begin();
-  field_.start([this, step] {
+  field_.start([this, step, goal_ms = is_whole ? 0 : fieldGoal_ms()] {
     const double begin_ms = clock_.now_ms();
     NewField field;
+    source_.setTimeGoal(goal_ms);
     field.step = step;
     field.frame = source_.frame(step);
     field.ms = clock_.now_ms() - begin_ms;
@@ -128,15 +139,18 @@ void RealTimeLoop::beginField(int step) {
   });
 }
 
-/// Begins the step that will be due when it is computed; only later steps than the present one.
+/// Begins the step that will be due when it is computed; only later steps than the present one, or the
+/// missing columns of that one.
 void RealTimeLoop::beginNextField() {
   const int newest = pending_ ? pending_->step : shown_step_;
-  if (field_.active() || computed_ || newest + 1 >= source_.count()) return;
+  if (field_.active() || computed_) return;
+  if (std::exchange(needs_whole_, false)) return beginField(newest, true);
+  if (newest + 1 >= source_.count()) return;
   const double now = now_ms();
   const long long slot = std::max(slotAt(now) + 1, slotAt(now + field_ms_));
   const int step = std::max(newest + 1, stepDueAt(slot));
   report_.field_steps_skipped += step - newest - 1;
-  beginField(step);
+  beginField(step, false);
 }
 
 /// Draws the first picture a few times, so that camera and colours are fitted, memory is allocated and the
@@ -154,7 +168,9 @@ void RealTimeLoop::rehearse() {
 void RealTimeLoop::takeField() {
   if (!field_.done()) return;
   computed_ = field_.take();
+  const Frame& frame = computed_->frame;
   field_ms_ = computed_->ms;
+  needs_whole_ = frame.column_step > 1 && (!frame.changed || computed_->step + 1 == source_.count());
 }
 
 void RealTimeLoop::raise(SceneEvent event) {
@@ -208,10 +224,14 @@ void RealTimeLoop::drawFrame(const render::FramePlan& plan) {
   begun_slot_ = slot;
   if (event_ms_) event.abort_latency_ms = begin_ms - *std::exchange(event_ms_, std::nullopt);
   if (pending_) {
+    const bool is_completion = report_.field_updates > 0 && pending_->step == shown_step_;
+    if (is_completion && !isDue(slot)) ++report_.due;
     painter_.setFrame(pending_->frame);
     shown_step_ = pending_->step;
     event.field_ms = pending_->ms;
+    event.column_step = pending_->frame.column_step;
     ++report_.field_updates;
+    report_.field_updates_interpolated += event.column_step > 1 ? 1 : 0;
     pending_.reset();
   }
   if (options_.orbit_rate_deg_s != 0) {
@@ -219,6 +239,7 @@ void RealTimeLoop::drawFrame(const render::FramePlan& plan) {
   }
   event.prepare_ms = now_ms() - begin_ms;
   drawn_ = painter_.draw(plan);
+  drawing_ms_ = now_ms() - begin_ms;
   beginNextField();  // in parallel, in the remaining time of the slot
   event.labels_ms = show();
   event.rays = drawn_.rays;

@@ -21,6 +21,7 @@ struct RealTimeOptions {
   double speed = 1;                  ///< scenario seconds per second
   std::optional<double> duration_s;  ///< of the clock; none: until one step after the last
   double orbit_rate_deg_s = 0;       ///< of the camera, clockwise from above
+  bool whole_fields = false;         ///< every column of each field is computed, also if that takes longer
   bool verify = false;  ///< compare each settled picture with a full cast, with the clock stopped
   bool keep_events =
       true;  ///< keep the events in the report; false avoids memory that grows with the playback
@@ -32,8 +33,9 @@ using Display = std::function<void(const render::Image8& picture, int slots)>;
 
 /// Plays a source. Every step of the source is an event, due at its time; a moving camera is an event in
 /// every slot. A frame begins at the start of a slot, or as soon as the field is ready. The next field is
-/// computed on a separate thread after the end of a busy frame. Restorations run on another thread, so that
-/// an event can stop them.
+/// computed on a separate thread after the end of a busy frame; where that takes longer than the time to the
+/// next step, columns are interpolated (FrameSource::setTimeGoal()), until the field rests or ends.
+/// Restorations run on another thread, so that an event can stop them.
 class RealTimeLoop {
  public:
   /// @param painter    draws the source in this view. Painter, view, source and clock must outlive this
@@ -72,7 +74,8 @@ class RealTimeLoop {
   render::FrameCost costOf(const render::FrameReport& frame, double other_ms) const;
 
   // Events
-  void beginField(int step);
+  double fieldGoal_ms() const;
+  void beginField(int step, bool is_whole);
   void beginNextField();
   void takeField();
   void raiseEvents();
@@ -109,7 +112,9 @@ class RealTimeLoop {
   std::optional<NewField> pending_;   // due, for the next frame
   int shown_step_ = 0;
   std::set<int> unchanged_steps_;
-  double field_ms_ = 0;  // of the last update
+  double field_ms_ = 0;       // of the last update
+  double drawing_ms_ = 0;     // of the last frame
+  bool needs_whole_ = false;  // the newest field has interpolated columns and rests
 
   long long begun_slot_ = -1;       // of the last frame
   long long accounted_slot_ = -1;   // slots with changes are counted up to here

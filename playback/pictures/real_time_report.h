@@ -18,6 +18,7 @@ struct RealTimeEvent {
   render::Pattern pattern = render::Pattern::full;  ///< of the busy frame
   long long rays = 0;
   double field_ms = 0;    ///< 0: the field was not new
+  int column_step = 1;    ///< of a new field: Frame::column_step
   double prepare_ms = 0;  ///< for the new field or view
   double cast_ms = 0;
   double interpolate_ms = 0;
@@ -49,7 +50,8 @@ struct RealTimeReport {
   double epsilon_ms = 0;  ///< at the end
   long long due = 0;      ///< slots of 1 / frames_per_s with a change to show
   int field_updates = 0;
-  int field_steps_skipped = 0;  ///< steps that could not be computed in time
+  int field_updates_interpolated = 0;  ///< of these with interpolated columns
+  int field_steps_skipped = 0;         ///< steps that could not be computed in time
   RealTimeTotals totals;
   std::vector<RealTimeEvent> events;  ///< empty without RealTimeOptions::keep_events
 };

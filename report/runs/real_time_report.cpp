@@ -50,6 +50,7 @@ Json toJson(const RealTimeEvent& event) {
           {"pattern", render::toString(event.pattern)},
           {"rays", event.rays},
           {"field_ms", rounded(event.field_ms)},
+          {"column_step", event.column_step},
           {"prepare_ms", rounded(event.prepare_ms)},
           {"cast_ms", rounded(event.cast_ms)},
           {"interpolate_ms", rounded(event.interpolate_ms)},
@@ -100,6 +101,10 @@ std::string summaryOf(const RealTimeReport& report) {
   text += fmt::format("; settled {}", totals.settled);
   if (totals.compared > 0)
     text += fmt::format(", equal to a full cast {} of {}", totals.equal, totals.compared);
+  if (report.field_updates_interpolated > 0) {
+    text += fmt::format("\n{} of {} fields have interpolated columns; --rays full computes all of them",
+                        report.field_updates_interpolated, report.field_updates);
+  }
   if (report.field_steps_skipped > 0) {
     text += fmt::format("\n{} steps of the field came too fast and were skipped", report.field_steps_skipped);
   }
@@ -126,6 +131,7 @@ Json toJson(const RealTimeReport& report) {
           {"abort_latency_ms", abortLatencies(report.events)},
           {"epsilon_ms", rounded(report.epsilon_ms)},
           {"field_updates", report.field_updates},
+          {"field_updates_interpolated", report.field_updates_interpolated},
           {"field_steps_skipped", report.field_steps_skipped},
           {"frames", frames}};
 }

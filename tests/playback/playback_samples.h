@@ -67,8 +67,14 @@ class MadeFrames : public FrameSource {
       volume.values.push_back(
           std::fmod(static_cast<float>(index) + 0.5F + 0.37F * static_cast<float>(voxel), greatest));
     }
-    return {{volume::Volume(std::move(volume)), nullptr}, {}, {}, changes, true, {}};
+    Frame frame{{volume::Volume(std::move(volume)), nullptr}, {}, {}, changes, true, {}};
+    const bool is_part = is_slow && goal_ms_ > 0;
+    frame.changed = changes || (is_incomplete_ && !is_part);
+    is_incomplete_ = is_part && (changes || is_incomplete_ || index == 1);
+    frame.column_step = is_incomplete_ ? 2 : 1;
+    return frame;
   }
+  void setTimeGoal(double goal_ms) override { goal_ms_ = goal_ms; }
   std::string name() const override { return "made"; }
   const LoadedScenario* scene() const override { return nullptr; }
   std::vector<std::string> warnings() const override { return {}; }
@@ -79,8 +85,12 @@ class MadeFrames : public FrameSource {
     return asked_;
   }
   bool changes = true;
+  bool is_slow =
+      false;  ///< with a time goal every second column is interpolated; without changes from step 1 on
 
  private:
+  double goal_ms_ = 0;
+  bool is_incomplete_ = false;
   const std::vector<double> times_s_;
   const std::function<void(int)> before_;
   mutable std::mutex mutex_;

@@ -100,6 +100,42 @@ TEST(RealTimeLoop, AFullFrameSettlesWithoutARestoration) {
   EXPECT_EQ(played.count(ControllerState::idle), 2);
 }
 
+std::vector<int> columnStepsOf(const Played& played) {
+  std::vector<int> steps;
+  for (const RealTimeEvent& event : played.report.events) {
+    if (event.state == ControllerState::busy) steps.push_back(event.column_step);
+  }
+  return steps;
+}
+
+TEST(RealTimeLoop, FieldsThatTakeTooLongAreInterpolatedAndTheLastIsCompleted) {
+  MadeFrames source(seconds(3));
+  source.is_slow = true;
+  const Played played = play(optionsOf(Pattern::columns), source);
+  EXPECT_EQ(source.asked(), (std::vector<int>{0, 1, 2, 2}));
+  EXPECT_EQ(columnStepsOf(played), (std::vector<int>{1, 2, 2, 1}));
+  EXPECT_EQ(played.report.field_updates, 4);
+  EXPECT_EQ(played.report.field_updates_interpolated, 2);
+  EXPECT_EQ(played.report.due, played.report.totals.busy);
+}
+
+TEST(RealTimeLoop, AFieldThatRestsIsCompleted) {
+  MadeFrames source(seconds(4));
+  source.is_slow = true;
+  source.changes = false;  // but the first step, and its columns
+  const Played played = play(optionsOf(Pattern::columns), source);
+  EXPECT_EQ(source.asked(), (std::vector<int>{0, 1, 1, 2, 3}));
+  EXPECT_EQ(played.report.field_updates_interpolated, 0) << "an unchanged field is not shown again";
+}
+
+TEST(RealTimeLoop, WholeFieldsHaveNoTimeGoal) {
+  MadeFrames source(seconds(3));
+  source.is_slow = true;
+  RealTimeOptions options = optionsOf(Pattern::full);
+  options.whole_fields = true;
+  EXPECT_EQ(columnStepsOf(play(options, source)), (std::vector<int>{1, 1, 1}));
+}
+
 TEST(RealTimeLoop, AMovingCameraKeepsItBusyAndIsDueInEverySlot) {
   MadeFrames source(seconds(1));
   RealTimeOptions options = optionsOf(Pattern::columns);
