@@ -122,7 +122,8 @@ double RealTimeLoop::fieldGoal_ms() const {
   if (options_.whole_fields || last == 0) return 0;
   const double apart_ms = (source_.time_s(last) - source_.time_s(0)) / last / options_.speed * 1000;
   const double between_ms = std::max(period_ms_, apart_ms);
-  return std::max(between_ms / 4, between_ms - drawing_ms_);
+  constexpr double kOfField = 0.9;  // the rest is for what surrounds the field
+  return kOfField * std::max(between_ms / 4, between_ms - drawing_ms_);
 }
 
 /// @param is_whole  with all columns

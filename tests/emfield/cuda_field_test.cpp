@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "emfield/solver/column_step.h"
 #include "emscape/base/cuda/device.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "propagation/parabolic_equation/air/refractivity_field.h"
@@ -154,6 +155,15 @@ class Pair {
 
   const Difference& difference() const { return difference_; }
   FieldSolver& gpu() { return gpu_; }
+  void setTimeGoal(double goal_ms) {
+    cpu_.setTimeGoal(goal_ms);
+    gpu_.setTimeGoal(goal_ms);
+  }
+  /// Step between columns, of both.
+  int columnStep() const {
+    EXPECT_EQ(cpu_.columnStep(), gpu_.columnStep());
+    return gpu_.columnStep();
+  }
 
  private:
   static FieldOptions with(FieldOptions options, Backend backend) {
@@ -217,6 +227,32 @@ TEST_P(CudaField, EqualsCpuOverTerrain) {
       Pair pair(scenario, std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0));
       expectSameField(pair, random, frame == FrameKind::enu ? 1 : 4);
     }
+  }
+}
+
+TEST_P(CudaField, APartOfTheColumnsEqualsThatOfTheCpuAndIsCompleted) {
+  std::mt19937 random(14);
+  for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
+    const auto scenario = randomScenario(
+        random, frame,
+        {PropagationModel::diffraction, PropagationModel::horizon, PropagationModel::diffraction}, 1900);
+    scenario->region.dims = {242, 201, 32};  // so that the columns take longer than the sums
+    FieldOptions options;
+    options.allow_missing_terrain = true;
+    Pair pair(scenario, std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, 0.02),
+              options);
+    scenario::Snapshot snapshot = pair.start();
+    pair.update(snapshot);
+    EXPECT_EQ(pair.columnStep(), 1);
+    constexpr double kUnreachable_ms = 1e-3;
+    pair.setTimeGoal(kUnreachable_ms);
+    for (scenario::EmitterState& emitter : snapshot.emitters) emitter.position.latitude_deg += 0.01;
+    pair.update(snapshot);
+    EXPECT_EQ(pair.columnStep(), ColumnPace::kMaxStep);
+    pair.setTimeGoal(0);
+    pair.update(snapshot);
+    EXPECT_EQ(pair.columnStep(), 1);
+    pair.difference().expectSmall();
   }
 }
 
