@@ -154,8 +154,9 @@ class FieldSolver {
   /// Time (ms) that an update should take while emitters move; 0, the default: every column is computed.
   /// If the columns of the emitters that moved take longer, by their last times, only every second or fourth
   /// column in each direction is computed, and the losses of the others are interpolated (columnStep()). The
-  /// first update of an emitter computes all of them, as does a GPU, and so do models that march outwards or
-  /// have a reflected ray, and surfaces. An update with 0 completes what is interpolated.
+  /// first update of an emitter computes all of them, and so do models that march outwards or have a
+  /// reflected ray, surfaces, and on a GPU all models but `diffraction` and `horizon`. An update with 0
+  /// completes what is interpolated.
   void setTimeGoal(double goal_ms);
   /// Of the last update: every step-th column in each direction is computed for all emitters; 1: every
   /// column.
