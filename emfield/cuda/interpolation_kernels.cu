@@ -16,21 +16,21 @@ __global__ void interpolateKernel(const DevicePartTask* tasks, const __grid_cons
   const LinesAround y(static_cast<int>(c) / row, static_cast<int>(grid.column_count) / row, grid.part.step);
   if (x.is_line && y.is_line) return;
   const DevicePartTask& task = tasks[blockIdx.y];
-  const auto mix = [&](const auto& valueAt) {
-    const auto inRow = [&](int at_y) {
-      const auto begin = static_cast<std::size_t>(at_y) * row;
-      return between(valueAt(begin + x.below), valueAt(begin + x.after), x.weight);
-    };
-    return between(inRow(y.below), inRow(y.after), y.weight);
+  const auto rowOf = [row](int at_y) { return static_cast<std::size_t>(at_y) * row; };
+  const std::size_t corners[] = {rowOf(y.below) + x.below, rowOf(y.below) + x.after, rowOf(y.after) + x.below,
+                                 rowOf(y.after) + x.after};
+  const auto mix = [&](float a, float b, float after_a, float after_b) {
+    return between(between(a, b, x.weight), between(after_a, after_b, x.weight), y.weight);
   };
-  const float edge_m = mix([&](std::size_t column) { return task.shadow_edge_m[column]; });
-  task.shadow_edge_m[c] = edge_m;
-  if (isnan(edge_m)) atomicAdd(&task.counts->unknown_columns, 1);
+  float* const edge_m = task.shadow_edge_m;
+  edge_m[c] = mix(edge_m[corners[0]], edge_m[corners[1]], edge_m[corners[2]], edge_m[corners[3]]);
+  if (isnan(edge_m[c])) atomicAdd(&task.counts->unknown_columns, 1);
   if (task.codes == nullptr) return;
-  for (int k = 0; k < grid.layers; ++k) {
-    task.codes[static_cast<std::size_t>(k) * grid.column_count + c] =
-        codeBetween(mix([&](std::size_t column) { return partValue(grid, task.codes, column, k); }));
-  }
+  const PartColumn a(grid, task.codes, corners[0]), b(grid, task.codes, corners[1]);
+  const PartColumn after_a(grid, task.codes, corners[2]), after_b(grid, task.codes, corners[3]);
+  ExcessCode* code = task.codes + c;
+  for (int k = 0; k < grid.layers; ++k, code += grid.column_count)
+    *code = codeBetween(mix(a(k), b(k), after_a(k), after_b(k)));
 }
 
 }  // namespace

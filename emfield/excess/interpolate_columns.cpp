@@ -93,7 +93,7 @@ void interpolateColumnsCpu(const ExcessGrid& grid, const ExcessOutput& out) {
   parallelFor(grid.layers, 1, [&](int begin, int end) {
     std::vector<ExcessCode> codes(width);
     for (int k = begin; k < end; ++k) {
-      const auto valueAt = [&](int x, int y) { return partValue(grid, out.excess.codes, indexOf(x, y), k); };
+      const auto valueAt = [&](int x, int y) { return PartColumn(grid, out.excess.codes, indexOf(x, y))(k); };
       // The rows of the part are read in layers above this one, too: only others are written.
       fillLayer(columns, rows, valueAt, [&](int y, const float* values) {
         storeCodes(values, width, codes.data());

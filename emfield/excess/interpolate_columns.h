@@ -36,16 +36,27 @@ EMSCAPE_HD __attribute__((always_inline)) inline ExcessCode codeBetween(float va
   return value == value ? static_cast<ExcessCode>(static_cast<int>(rounded)) : kUnknownExcess;
 }
 
-/// The code of a column of the part, for the interpolation of a layer, as a number; NaN: unknown or left out.
-EMSCAPE_HD inline float partValue(const ExcessGrid& grid, const ExcessCode* codes, std::size_t column,
-                                  int layer) {
-  if (grid.isLeftOut(column)) return NAN;
-  const int lowest = grid.firstValid(column), top = grid.layers - 1;
-  const int above = layer < lowest ? lowest : layer;
-  const ExcessCode code =
-      codes[static_cast<std::size_t>(above < top ? above : top) * grid.column_count + column];
-  return code == kUnknownExcess ? NAN : static_cast<float>(code);
-}
+/// A column of the part, between which others are interpolated.
+class PartColumn {
+ public:
+  /// @param codes  of the grid
+  EMSCAPE_HD PartColumn(const ExcessGrid& grid, const ExcessCode* codes, std::size_t column)
+      : codes_(grid.isLeftOut(column) ? nullptr : codes + column),
+        in_layer_(grid.column_count),
+        lowest_(grid.firstValid(column) < grid.layers ? grid.firstValid(column) : grid.layers - 1) {}
+  /// Its code in a layer, as a number; below its ground that of its lowest layer above it. NaN: unknown or
+  /// left out.
+  EMSCAPE_HD float operator()(int layer) const {
+    if (codes_ == nullptr) return NAN;
+    const ExcessCode code = codes_[static_cast<std::size_t>(layer > lowest_ ? layer : lowest_) * in_layer_];
+    return code == kUnknownExcess ? NAN : static_cast<float>(code);
+  }
+
+ private:
+  const ExcessCode* codes_;
+  std::size_t in_layer_;
+  int lowest_;
+};
 
 /// Fills the columns of a grid that ExcessGrid::part does not contain: excess in decibels and shadow edges,
 /// bilinear between the columns of the part. A column of the part has in layers below its ground the excess
