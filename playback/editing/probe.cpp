@@ -7,6 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "volume/difference.h"
 #include "volume/labels.h"
 
 namespace emscape::playback {
@@ -21,9 +22,11 @@ Vec3d inVoxels(const Grid& grid, const Vec3d& position_m) {
   return {offset.x / grid.spacing_m.x, offset.y / grid.spacing_m.y, offset.z / grid.spacing_m.z};
 }
 
+/// A difference may be below its floor, which is 0: none.
 bool holdsField(const DenseVolume& volume, int i, int j, int k) {
   const float value = volume.values[static_cast<std::size_t>(volume.grid.index(i, j, k))];
-  return !volume.isMasked(i, j, k) && std::isfinite(value) && value > volume.info.floor;
+  return !volume.isMasked(i, j, k) && std::isfinite(value) &&
+         (value > volume.info.floor || volume::isDifference(volume.info));
 }
 
 /// Trilinear; none unless all eight voxels around have a field.
@@ -62,6 +65,7 @@ std::string textOf(const VolumeSample& sample, const DenseVolume& volume) {
     case VolumeSample::Kind::value:
       break;
   }
+  if (volume::isDifference(info) && sample.value == 0) return "no difference";
   if (!info.categorical) return fmt::format("{:.4g}{}", sample.value, unit);
   const auto index = static_cast<std::size_t>(std::lround(sample.value));
   const std::vector<std::string> labels = volume::labelsOf(info);

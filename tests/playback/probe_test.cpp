@@ -8,6 +8,7 @@
 #include "emscape/scenario/model/snapshot.h"
 #include "playback/editing/pick.h"
 #include "tests/playback/playback_samples.h"
+#include "volume/difference.h"
 
 namespace emscape::playback::test {
 namespace {
@@ -72,6 +73,20 @@ TEST(Probe, DescribesValuesInWords) {
   const ProbeReading reading = probe({5, 5, 5}, volume, nullptr, nullptr);
   EXPECT_FALSE(reading.height_msl_m);
   EXPECT_TRUE(reading.emitters.empty());
+}
+
+TEST(Probe, TellsLossesGainsAndNoDifference) {
+  volume::DenseVolume volume = madeVolume();
+  volume::VolumeInfo info;
+  info.quantity = "power_density_dbwm2";
+  info.unit = "dBW/m2";
+  volume.info = volume::differenceInfo(info);
+  volume.info.floor = 0;
+  for (const auto& [value, text] :
+       {std::pair(-12.5F, "-12.5 dB"), {10.0F, "10 dB"}, {0.0F, "no difference"}}) {
+    std::fill(volume.values.begin(), volume.values.end(), value);
+    EXPECT_EQ(probe({5, 5, 5}, volume, nullptr, nullptr).text, text);
+  }
 }
 
 render::Camera cameraAt(const char* text, const render::SceneBox& box, render::ImageSize size) {

@@ -9,6 +9,7 @@
 #include "document/document.h"
 #include "document/text_edit.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "scenario/file/save_scenario.h"
 #include "scenario/file/schema.h"
 #include "scenario/file/source.h"
 #include "tests/scenario/random_edits.h"
@@ -277,6 +278,28 @@ TEST_F(EditScenario, SavingToAnotherFolderKeepsFileReferencesValid) {
   const std::string file = (folder_.path() / "deep/er/t.yaml").string();
   saveScenario(scenario, file);
   EXPECT_THAT(test::readFile(file), HasSubstr("track: {file: ../../track.csv} # where"));
+  EXPECT_EQ(loadScenario(file)->platforms[2].track.size(), 2u);
+}
+
+TEST_F(EditScenario, SavingWithFilesCopiesThoseOfItsOwnFolderAndReplacesNone) {
+  const std::string track = "t_s,latitude_deg,longitude_deg,height_msl_m\n0,36,-84,100\n5,36.001,-84,100\n";
+  std::filesystem::create_directories(folder_.path() / "made/tracks");
+  folder_.write("made/tracks/track.csv", track);
+  const Scenario scenario = load(
+      test::replaced(kSmall, "    position: {latitude_deg: 36.002, longitude_deg: -84, height_msl_m: 100}",
+                     "    track: {file: tracks/track.csv}"),
+      "made/s.yaml");
+  const std::string file = (folder_.path() / "t.yaml").string();
+  saveWithFiles(scenario, file);
+  saveWithFiles(scenario, file);  // with the same copies
+  folder_.write("made/tracks/track.csv", "another recording");
+  EXPECT_THAT(test::readFile(file), HasSubstr("track: {file: t_files/track.csv}"));
+  EXPECT_EQ(loadScenario(file)->platforms[2].track.size(), 2u);
+  folder_.write("t_files/track.csv", "the user's");
+  folder_.write("made/tracks/track.csv", track);
+  saveWithFiles(scenario, file);
+  EXPECT_EQ(test::readFile(folder_.path() / "t_files/track.csv"), "the user's");
+  EXPECT_THAT(test::readFile(file), HasSubstr("track: {file: t_files_2/track.csv}"));
   EXPECT_EQ(loadScenario(file)->platforms[2].track.size(), 2u);
 }
 

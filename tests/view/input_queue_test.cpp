@@ -3,6 +3,8 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "emscape/base/error.h"
 
 namespace emscape::view {
@@ -61,11 +63,36 @@ TEST(InputQueue, KeysTypedIntoAFieldAndControlClicksDoNotWaitForTheFocus) {
   InputQueue queue;
   for (const int code : {GLFW_KEY_G, GLFW_KEY_3, GLFW_KEY_ENTER, GLFW_KEY_G})
     queue.push(key(code, GLFW_PRESS));
-  EXPECT_EQ(framesOf(queue, true), 3 + 4);
+  EXPECT_EQ(framesOf(queue, true), 1 + 4);
   queue = {};
   queue.push(button(GLFW_PRESS));
   queue.push(key(GLFW_KEY_3, GLFW_PRESS));
   EXPECT_EQ(framesOf(queue, false), 2);
+}
+
+TEST(InputQueue, AFieldTakesAllCharactersThatWaitInAFrame) {
+  const auto character = [](int code) {
+    InputEvent event;
+    event.kind = InputEvent::Kind::text;
+    event.code = code;
+    return event;
+  };
+  InputQueue queue;
+  for (int n = 0; n < 3; ++n) {
+    queue.push(key(GLFW_KEY_A, GLFW_PRESS));
+    queue.push(character('a'));
+    queue.push(key(GLFW_KEY_A, GLFW_RELEASE));
+  }
+  queue.push(key(GLFW_KEY_LEFT, GLFW_PRESS));
+  queue.push(key(GLFW_KEY_B, GLFW_PRESS));
+  queue.push(character('b'));
+  const std::vector<InputEvent> frame = queue.takeFrame(true);
+  EXPECT_EQ(std::count_if(frame.begin(), frame.end(),
+                          [](const InputEvent& event) { return event.kind == InputEvent::Kind::text; }),
+            3);
+  EXPECT_EQ(frame.back().code, GLFW_KEY_LEFT) << "after the characters, as Dear ImGui takes them";
+  EXPECT_EQ(queue.takeFrame(true).size(), 1U);
+  EXPECT_TRUE(queue.empty());
 }
 
 TEST(InputQueue, KeyOfAModifierCarriesTheStateAfterIt) {

@@ -152,7 +152,15 @@ TEST(SessionProbe, SaysWhereVolumeAndPointDisagree) {
   ProbeResult result = *sample->prober().result();
   EXPECT_EQ(pointFieldOf(result), PointField::same);
   result.reading->sample.kind = Kind::at_floor;
-  EXPECT_EQ(pointFieldOf(result), PointField::of_point_only);
+  EXPECT_EQ(pointFieldOf(result), PointField::differs) << "the point alone has a field";
+  result.floor = 1000;
+  EXPECT_EQ(pointFieldOf(result), PointField::same) << "the point has none above the floor either";
+  result.floor = -1000;
+  result.reading->sample.kind = Kind::value;
+  result.reading->sample.value += 4;
+  EXPECT_EQ(pointFieldOf(result), PointField::differs);
+  result.reading->sample.value -= 4;
+  result.reading->sample.kind = Kind::at_floor;
   for (Contribution& each : result.contributions) each.value = -INFINITY;
   EXPECT_EQ(pointFieldOf(result), PointField::same) << "none at all";
   result.reading->sample.kind = Kind::value;

@@ -36,6 +36,13 @@ bool leavesField(int code) {
          code == GLFW_KEY_ESCAPE;
 }
 
+/// The press of a key whose character comes as an event of its own: a field needs the character alone.
+bool isTypedCharacter(const InputEvent& event) {
+  constexpr int kShortcuts = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+  return event.kind == InputEvent::Kind::key && event.action != GLFW_RELEASE &&
+         (event.modifiers & kShortcuts) == 0 && event.code >= GLFW_KEY_SPACE && event.code < GLFW_KEY_ESCAPE;
+}
+
 /// Shift, Control, Alt or Super of either side.
 bool isModifier(int code) {
   return code >= GLFW_KEY_LEFT_SHIFT && code <= GLFW_KEY_RIGHT_SUPER;
@@ -63,6 +70,10 @@ std::vector<InputEvent> InputQueue::takeFrame(bool is_typing) {
   frames_to_focus_ = std::max(0, frames_to_focus_ - 1);
   while (!events_.empty()) {
     const InputEvent& event = events_.front();
+    if (is_typing && isTypedCharacter(event) && !has_press && frames_to_focus_ == 0) {
+      events_.pop_front();
+      continue;
+    }
     const bool is_press = event.kind == Kind::key && event.action == GLFW_PRESS && !isModifier(event.code);
     if (is_press && (has_press || has_button || frames_to_focus_ > 0)) break;
     has_press = has_press || is_press;
@@ -72,7 +83,9 @@ std::vector<InputEvent> InputQueue::takeFrame(bool is_typing) {
     if (event.kind == Kind::key || event.kind == Kind::button) {
       if (event.modifiers != modifiers.value_or(event.modifiers)) break;
       modifiers = event.modifiers;
-      if (event.action != GLFW_REPEAT && !changed.insert({event.kind, event.code}).second) break;
+      const bool is_of_character = is_typing && event.kind == Kind::key && event.code < GLFW_KEY_ESCAPE;
+      if (event.action != GLFW_REPEAT && !is_of_character && !changed.insert({event.kind, event.code}).second)
+        break;
     }
     moves_focus = moves_focus || (is_press && (!is_typing || leavesField(event.code))) ||
                   (event.kind == Kind::button && event.action == GLFW_RELEASE);

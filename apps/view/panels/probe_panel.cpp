@@ -157,21 +157,28 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
   const playback::ProbeReading& reading = *result.reading;
   const PointField point = pointFieldOf(result);
   const bool is_value =
-      reading.sample.kind == playback::VolumeSample::Kind::value && point == PointField::same;
+      point == PointField::differs ||
+      (point == PointField::same && reading.sample.kind == playback::VolumeSample::Kind::value);
   ImGui::SetWindowFontScale(1.25F);
   ImGui::PushStyleColor(ImGuiCol_Text,
                         is_value ? accentColor(theme) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
   const playback::ViewState& view = context.session.view();
   const volume::VolumeInfo& info = context.session.picture()->info();
   const std::string value = valueText(reading, info, view);
-  ImGui::TextWrapped(
-      "%s", drawable(point == PointField::of_volume_only ? "no field at the point itself" : value).c_str());
+  const std::string at_point = [&]() -> std::string {
+    if (point == PointField::same) return value;
+    if (point == PointField::of_volume_only) return "no field at the point itself";
+    const double exact = *pointValueOf(result);
+    const std::string unit = info.unit.empty() ? "" : " " + info.unit;
+    return valueText(exact, info.unit, fmt::format("{:.4g}{}", exact, unit), view) + " at the point itself";
+  }();
+  ImGui::TextWrapped("%s", drawable(at_point).c_str());
   ImGui::PopStyleColor();
   ImGui::SetWindowFontScale(1);
-  if (point == PointField::of_volume_only) {
+  if (point != PointField::same) {
+    ImGui::PushStyleColor(ImGuiCol_Text, stateColor(render::ControllerState::busy));
     ImGui::TextWrapped("%s", drawable(value + " in the picture, between voxel centres").c_str());
-  } else if (point == PointField::of_point_only) {
-    ImGui::TextWrapped("in the picture, between voxel centres; the point itself has a field");
+    ImGui::PopStyleColor();
   }
   ImGui::TextDisabled("%s", drawable(render::quantityTitle(result.quantity, info.unit)).c_str());
   drawPlace(result, view, context.scale);
@@ -179,7 +186,10 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
   if (reading.emitters.empty()) return;
   ImGui::Spacing();
   ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(theme));
-  ImGui::TextWrapped("at the point itself (the value above is that of the volume, between voxel centres)");
+  ImGui::TextWrapped(
+      point == PointField::same
+          ? "at the point itself (the value above is that of the volume, between voxel centres)"
+          : "at the point itself");
   ImGui::PopStyleColor();
   drawEmitters(context, result);
 }

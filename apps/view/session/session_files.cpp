@@ -10,6 +10,7 @@
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "scenario/file/save_scenario.h"
 
 namespace emscape::view {
 namespace {
@@ -101,8 +102,14 @@ std::string Session::usualScenarioFile() const {
 }
 
 void Session::saveScenario(const std::string& file) {
-  jobs_.run([this, file, saved = scenario()]() -> BackgroundJobs::Finish {
-    scenario::saveScenario(*saved, file);
+  const bool is_imported =
+      !options_.made_of.empty() && !options_.stream;  // its tracks are in a folder of ours
+  jobs_.run([this, file, is_imported, saved = scenario()]() -> BackgroundJobs::Finish {
+    if (is_imported) {
+      scenario::saveWithFiles(*saved, file);
+    } else {
+      scenario::saveScenario(*saved, file);
+    }
     return [this, file, saved] {
       if (scenario() == saved) {
         edits_->markSaved();

@@ -48,6 +48,7 @@ class Prober::Reader {
     const bool is_beside = question.pixel && question.pixel->x < picture.split_column;
     result.scenario = is_beside ? nullptr : picture.scenario;
     result.quantity = picture.info().quantity;
+    result.floor = picture.info().floor;
     result.time_s = picture.info().time_s;
     try {
       const volume::DenseVolume& volume = is_beside ? besideOf(picture) : hostOf(question.picture);
@@ -186,21 +187,40 @@ bool Prober::update(const PicturePtr& picture) {
   return is_new;
 }
 
-PointField pointFieldOf(const ProbeResult& result) {
+std::optional<double> pointValueOf(const ProbeResult& result) {
   using Kind = playback::VolumeSample::Kind;
-  if (!result.reading || !result.scenario || result.contributions.empty()) return PointField::same;
-  const bool is_instant = result.scenario->output.interval.kind == scenario::IntervalKind::instant;
+  if (!result.reading || !result.scenario || result.contributions.empty()) return std::nullopt;
+  const auto& output = result.scenario->output;
   const Kind kind = result.reading->sample.kind;
-  if (!is_instant || (kind != Kind::value && kind != Kind::at_floor)) return PointField::same;
-  const auto& all = result.contributions;
-  if (std::any_of(all.begin(), all.end(), [&](const Contribution& each) {
-        return !result.reading->emitters[each.emitter].budget.has_value();
-      }))
-    return PointField::same;
-  const bool has_point =
-      std::any_of(all.begin(), all.end(), [](const Contribution& each) { return std::isfinite(each.value); });
-  if (has_point == (kind == Kind::value)) return PointField::same;
-  return has_point ? PointField::of_point_only : PointField::of_volume_only;
+  if (output.interval.kind != scenario::IntervalKind::instant) return std::nullopt;
+  if (kind != Kind::value && kind != Kind::at_floor) return std::nullopt;
+  const bool is_sum =
+      result.quantity == "power_density_dbwm2" && output.combine == scenario::CombineMode::sum;
+  double strongest = -std::numeric_limits<double>::infinity(), sum_w = 0;
+  bool has_quantity = false;
+  for (const Contribution& each : result.contributions) {
+    if (!result.reading->emitters[each.emitter].budget) return std::nullopt;
+    if (!each.is_of_quantity) continue;
+    has_quantity = true;
+    strongest = std::max(strongest, each.value);
+    sum_w += std::pow(10, each.value / 10);
+  }
+  if (!has_quantity) return std::nullopt;
+  const double value = is_sum ? 10 * std::log10(sum_w) : strongest;
+  return value > static_cast<double>(result.floor) ? value : -std::numeric_limits<double>::infinity();
+}
+
+PointField pointFieldOf(const ProbeResult& result) {
+  const std::optional<double> point = pointValueOf(result);
+  if (!point) return PointField::same;
+  const bool has_volume = result.reading->sample.kind == playback::VolumeSample::Kind::value;
+  if (std::isinf(*point)) return has_volume ? PointField::of_volume_only : PointField::same;
+  if (!has_volume) return PointField::differs;
+  // Other quantities are not the strongest of the emitters' contributions.
+  const bool is_comparable = result.quantity == "power_density_dbwm2" || result.quantity == "snr_db";
+  constexpr double kNoticeable_db = 3;
+  const double apart_db = std::abs(*point - static_cast<double>(result.reading->sample.value));
+  return is_comparable && apart_db > kNoticeable_db ? PointField::differs : PointField::same;
 }
 
 std::vector<Contribution> contributionsOf(const playback::ProbeReading& reading,
@@ -213,6 +233,7 @@ std::vector<Contribution> contributionsOf(const playback::ProbeReading& reading,
       contribution.text = "off";
     } else if (emitter.budget) {
       const emfield::BudgetTerm* term = emitter.budget->find(quantity);
+      contribution.is_of_quantity = term != nullptr;
       if (term == nullptr) term = emitter.budget->find("power_density_dbwm2");
       contribution.value = term->value;
       contribution.text = std::isinf(term->value) ? "no field" : emfield::valueText(term->value);

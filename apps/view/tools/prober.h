@@ -16,10 +16,11 @@ namespace emscape::view {
 
 /// Contribution of one emitter to a reading.
 struct Contribution {
-  std::size_t emitter = 0;  ///< index into ProbeReading::emitters
-  double value = 0;         ///< -infinity without a field
-  std::string unit;         ///< of the value; empty if there is none
-  std::string text;         ///< value with unit, or the reason why there is none
+  std::size_t emitter = 0;     ///< index into ProbeReading::emitters
+  double value = 0;            ///< -infinity without a field
+  std::string unit;            ///< of the value; empty if there is none
+  std::string text;            ///< value with unit, or the reason why there is none
+  bool is_of_quantity = true;  ///< false: power density, in place of a quantity that the emitter has not
 };
 /// The contributions, strongest first. @param quantity  to list; power density for emitters without a term of
 /// it
@@ -32,14 +33,20 @@ struct ProbeResult {
   std::string error;  ///< reason why nothing could be read
   std::shared_ptr<const scenario::Scenario> scenario;
   std::string quantity;  ///< of the volume
+  float floor = 0;       ///< of the volume: values at or below it are no field
   double time_s = 0;
 };
 
+/// The value of the field at the point itself, from the contributions: -infinity without a field. None where
+/// it is not known (a refused path, a mean over time, a difference) and where the volume has no value to
+/// compare with.
+std::optional<double> pointValueOf(const ProbeResult& result);
+
 /// What the volume and the point itself say of a field at one time.
 enum class PointField {
-  same,            ///< both have a field, or neither; also where only one of them is known
+  same,            ///< within 3 dB, or neither has a field, or they cannot be compared
   of_volume_only,  ///< the voxels around have one, the point itself has none: at the edge of the field
-  of_point_only
+  differs          ///< the point itself has another one
 };
 PointField pointFieldOf(const ProbeResult& result);
 
