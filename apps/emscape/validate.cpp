@@ -19,6 +19,7 @@
 #include "report/paths/refractivity_report.h"
 #include "report/runs/work_report.h"
 #include "scenario/file/far_outside.h"
+#include "scenario/model/step_check.h"
 
 namespace emscape::app {
 namespace {
@@ -77,26 +78,11 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
 bool checkSteps(const scenario::Scenario& scenario, const scenario::Terrain* terrain,
                 std::vector<Problem>& problems) {
   const WorkPart part("steps of the clock", 0, 0);
-  const std::vector<double> times = scenario::timesOf(scenario.clock);
-  const auto alone = std::make_shared<scenario::Scenario>(scenario);  // with a single platform at a time
-  alone->emitters.clear();
-  alone->placed_receivers.clear();
   bool starts = true;
-  for (const scenario::Platform& platform : scenario.platforms) {
-    alone->platforms = {platform};
-    const bool moves = platform.track.size() > 1;
-    std::size_t failed = 0;
-    for (std::size_t i = 0; i < (moves ? times.size() : 1); ++i) {
-      stopIfInterrupted();
-      try {
-        scenario::snapshotAt(alone, terrain, times[i]);
-      } catch (const Error& error) {
-        if (failed++ == 0) problems.push_back(problemOf(error, scenario.file));
-        if (i == 0) starts = false;
-      }
-    }
-    if (failed > 0 && moves)
-      problems.back().message += fmt::format(" (at {} of {} steps)", failed, times.size());
+  for (const scenario::StepFault& fault : scenario::faultsOfSteps(scenario, terrain, 1, stopIfInterrupted)) {
+    problems.push_back(problemOf(fault.error, scenario.file));
+    problems.back().message = fault.text();
+    starts = starts && !fault.at_first;
   }
   return starts;
 }

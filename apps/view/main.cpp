@@ -47,12 +47,11 @@ void show(ViewOptions options) {
     options.view.input = options.stream->file();
     options.offers_kept_view = false;
   }
-  std::string note;
   if (!options.view.input.empty() &&
       playback::inputKindOf(options.view.input) == playback::InputKind::recording) {
     options.made_of = options.view.input;
-    options.view.input = importRecordingFile(options.view.input, note);
-    logInfo(note);
+    options.view.input = importRecordingFile(options.view.input, options.made_note);
+    logInfo(options.made_note);
   }
   if (!options.view.input.empty()) playback::addOwnScenario(options.view);
   // A wrong name and all errors in a scenario are reported before a window appears.

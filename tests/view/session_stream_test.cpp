@@ -229,6 +229,7 @@ TEST(Recordings, AreOpenedAsScenariosInTheFolderOfTheState) {
   const Opening opening = prepareOpening({recording, "", std::nullopt, false}, {});
   EXPECT_EQ(std::filesystem::path(opening.options.view.input).filename(), "flight.yaml");
   EXPECT_THAT(opening.note, HasSubstr("flight.acmi: 1 platform, emitters of the starter set"));
+  EXPECT_EQ(opening.options.made_note, opening.note) << "a warning as long as it is shown";
   EXPECT_EQ(opening.options.view.input.find(folder.path().string()), 0u);
   EXPECT_EQ(opening.options.namesake(), recording) << "outputs are beside it";
   folder.write("torn.acmi", "nothing of the kind\n");

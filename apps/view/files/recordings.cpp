@@ -43,11 +43,13 @@ std::string importRecordingFile(const std::string& file, std::string& note) {
   }();
   int unmatched = 0;
   for (const interop::ImportedEmitters& use : result.emitters) unmatched += use.fault.empty() ? 0 : use.count;
-  note =
-      fmt::format("{}: {}, emitters of {}{}; `emscape import` has further options (terrain, region)",
-                  recording.filename().string(), countText(result.platforms.size(), "platform", "platforms"),
-                  options.emitters.empty() ? "the starter set" : fs::path(database).filename().string(),
-                  unmatched > 0 ? fmt::format(", {} left out", countText(unmatched, "beam", "beams")) : "");
+  note = fmt::format(
+      "{}: {}, emitters of {}{}, over flat land at mean sea level; `emscape import` has further "
+      "options (emitters, terrain, region)",
+      recording.filename().string(), countText(result.platforms.size(), "platform", "platforms"),
+      options.emitters.empty() ? "the starter set (nominal values of a kind of radar, without a source)"
+                               : fs::path(database).filename().string(),
+      unmatched > 0 ? fmt::format(", {} left out", countText(unmatched, "beam", "beams")) : "");
   return options.scenario;
 }
 

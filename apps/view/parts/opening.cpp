@@ -116,6 +116,7 @@ Opening prepareOpening(const OpenRequest& asked, const ViewOptions& present) {
   if (options.view.input != present.view.input) {
     options.stream.reset();
     options.made_of = made_of;
+    options.made_note = opening.note;
   }
   options.view.transfer_file.clear();
   options.unsaved_edits = request.unsaved_edits;

@@ -30,6 +30,7 @@ struct ViewOptions {
   std::optional<playback::StreamRequest> stream_request;  ///< of the command line
   /// The user's file of which the program has made the input: the base of a stream, a recording; else empty.
   std::string made_of;
+  std::string made_note;  ///< what the program assumed for it; may be empty
   /// The file whose name and folder those of outputs follow.
   const std::string& namesake() const { return made_of.empty() ? view.input : made_of; }
   std::string script, log;

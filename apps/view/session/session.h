@@ -297,6 +297,7 @@ class Session {
   /// @return true if they have changed
   bool takeWarnings(double now_s);
   void checkScenario();
+  void checkSteps();
   void joinModelWarnings(double now_s);
   std::string recordTimes(const RecordRange& range) const;
   void finishJobs();
@@ -451,6 +452,8 @@ class Session {
   playback::ScenarioPtr quantities_of_;
   std::vector<std::string> warnings_;
   playback::ScenarioPtr checked_scenario_;
+  playback::ScenarioPtr stepped_scenario_;  ///< whose steps are checked
+  std::vector<std::string> step_warnings_;
   std::vector<std::string> scenario_warnings_;                       // of that scenario
   std::shared_ptr<const std::vector<std::string>> joined_warnings_;  // of the models, ...
   std::vector<std::string> model_warnings_;                          // ... joined

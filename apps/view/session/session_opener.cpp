@@ -115,6 +115,7 @@ bool SessionOpener::close(std::unique_ptr<Session>& session) {
   nothing.state.clear();
   nothing.stream.reset();
   nothing.made_of.clear();
+  nothing.made_note.clear();
   session->leave(true);
   const std::string fault = endStream(*session, nothing);
   endBeside(std::move(session));

@@ -5,6 +5,7 @@
 #include "apps/view/session/session.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "report/warnings.h"
+#include "scenario/model/step_check.h"
 
 namespace emscape::view {
 
@@ -26,6 +27,25 @@ void Session::checkScenario() {
   });
 }
 
+/// Finds the steps at which a platform cannot be where it is, over the ground of the picture, in the
+/// background.
+void Session::checkSteps() {
+  const playback::LivePicture* const shown = picture();
+  if (shown == nullptr || options_.stream || isDragging() || shown->scenario == nullptr ||
+      shown->scenario == stepped_scenario_)
+    return;
+  stepped_scenario_ = shown->scenario;
+  jobs_.run([this, checked = stepped_scenario_, terrain = shown->terrain]() -> BackgroundJobs::Finish {
+    constexpr std::size_t kChecked = 100'000;  // positions, in half a second
+    const std::size_t all = checked->platforms.size() * scenario::timesOf(checked->clock).size();
+    const int every = static_cast<int>(all / kChecked) + 1;
+    std::vector<std::string> warnings;
+    for (const scenario::StepFault& fault : scenario::faultsOfSteps(*checked, terrain.get(), every))
+      warnings.push_back("there is no field at some steps: " + fault.text());
+    return [this, warnings] { step_warnings_ = warnings; };
+  });
+}
+
 /// Joins the warnings of the models of many emitters, in the background.
 void Session::joinModelWarnings(double now_s) {
   constexpr double kInterval_s = 0.5;  // of a playing series, whose fields have different warnings
@@ -41,10 +61,12 @@ void Session::joinModelWarnings(double now_s) {
 
 bool Session::takeWarnings(double now_s) {
   checkScenario();
+  checkSteps();
   joinModelWarnings(now_s);
   std::vector<std::string> warnings;
   // A scenario that is read again, as the reference of a comparison, logs its warnings again.
-  for (const auto& lines : {files_->messages->lines(), scenario_warnings_, model_warnings_}) {
+  if (!options_.made_note.empty()) warnings.push_back(options_.made_note);
+  for (const auto& lines : {files_->messages->lines(), scenario_warnings_, step_warnings_, model_warnings_}) {
     for (const std::string& line : lines) {
       if (std::find(warnings.begin(), warnings.end(), line) == warnings.end()) warnings.push_back(line);
     }
