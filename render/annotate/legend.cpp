@@ -393,8 +393,9 @@ std::string quantityTitle(const std::string& quantity, const std::string& unit) 
     name.resize(last);
   }
   std::replace(name.begin(), name.end(), '_', ' ');
-  const bool is_abbreviation = name == "snr" || name == "sinr" || name == "sclnr";
-  for (std::size_t i = 0; i < (is_abbreviation ? name.size() : std::min(name.size(), std::size_t{1})); ++i)
+  const std::string word = name.substr(0, name.find(' '));
+  const bool is_abbreviation = word == "snr" || word == "sinr" || word == "sclnr";
+  for (std::size_t i = 0; i < (is_abbreviation ? word.size() : std::min(name.size(), std::size_t{1})); ++i)
     name[i] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[i])));
   return colon == std::string::npos ? name : name + " of " + quantity.substr(colon + 1);
 }

@@ -34,6 +34,7 @@ TEST(Legend, NamesQuantitiesAndUnitsAsPeopleWriteThem) {
   EXPECT_EQ(quantityTitle("power_density_dbwm2", "dBW/m2"), "Power density");
   EXPECT_EQ(quantityTitle("field_strength_dbuvm", "dBuV/m"), "Field strength");
   EXPECT_EQ(quantityTitle("snr_db", "dB"), "SNR");
+  EXPECT_EQ(quantityTitle("snr_difference_db", "dB"), "SNR difference");
   EXPECT_EQ(quantityTitle("sinr_db", "dB"), "SINR");
   EXPECT_EQ(quantityTitle("sclnr_db", "dB"), "SCLNR");
   EXPECT_EQ(quantityTitle("emitter_count", ""), "Emitter count");
