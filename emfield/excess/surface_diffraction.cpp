@@ -121,8 +121,8 @@ struct EarthBelowPath {
     const float slope = (rx_m - tx_m) / d;
     const auto heightOf = [=](float range, float height) { return height - tx_m - slope * range; };
     Maximum highest{0, std::min(highest_block, path.blocks - 1)};
-    search.visit(highest.block, heightOf, highest);
-    if (!highest.is_bound && isClearHoweverShared(trend, rx_m, highest.value)) return true;
+    highest.value = std::max(highest.value, search.leastOf(highest.block, heightOf));
+    if (isClearHoweverShared(trend, rx_m, highest.value)) return true;
     search(
         [=](float lowered, float, float first_m, float last_m) {
           return lowered + k * last_m * last_m - tx_m - slope * (slope > 0 ? first_m : last_m);
