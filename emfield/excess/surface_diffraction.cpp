@@ -207,7 +207,7 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const SectorObstac
     path.exact_distance_m = to->distance_m;
     path.distance_m = static_cast<float>(to->distance_m);
     path.before = sector.task.ground.lastBefore(to->distance_m);
-    path.last_m = path.distance_m * (1 - 3e-7f);
+    path.last_m = path.distance_m * static_cast<float>(propagation::kBeforeReceivers);
     path.aside = to->aside_rad * per_rad;
     if (path.before < kMinPosts || path.before + 1 >= terrain.posts()) continue;
     const bool is_beyond = path.last_m > obstacles.posts.farthest_m()[path.before];
