@@ -49,18 +49,15 @@ struct ExcessScratch {
   float* post_numbers = nullptr;  ///< kPostNumbers arrays of `posts` elements, for the model
   int posts = 0;
 
-  static constexpr int kPostNumbers = 5;
-  static constexpr int kMinPosts = 16;  ///< for which there is memory in any case
+  static constexpr int kPostNumbers = 2;
 
   /// @param posts  of the longest profile
   static EMSCAPE_HD std::size_t bytes(int posts, int layers) {
-    posts = posts < kMinPosts ? kMinPosts : posts;
     return std::size_t(posts) * (sizeof(double) + (3 + kPostNumbers) * sizeof(float)) +
            3 * sizeof(float) * std::size_t(layers) + sizeof(float) + sizeof(double);
   }
   /// @param memory  bytes(posts, layers), aligned for double
   static EMSCAPE_HD ExcessScratch in(void* memory, int posts, int layers) {
-    posts = posts < kMinPosts ? kMinPosts : posts;
     ExcessScratch scratch;
     scratch.range_m = static_cast<double*>(memory);
     float* next = reinterpret_cast<float*>(scratch.range_m + posts);

@@ -8,6 +8,10 @@ namespace emscape::propagation {
 /// Land cover of a post over the sea, in place of a height.
 constexpr float kSeaCover = -1;
 
+/// Times the distance of the receivers: the largest range of a post between. Nearer ones would be at the
+/// receivers in float.
+constexpr double kBeforeReceivers = 1 - 3e-7;
+
 /// Terrain along a path: `count` posts, ranges increasing from 0 at the transmitter; two posts in
 /// between may be at the same range, up to rounding.
 struct TerrainProfile {

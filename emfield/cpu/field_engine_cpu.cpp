@@ -11,6 +11,7 @@
 #include "emfield/solver/power_cache.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/work.h"
+#include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
 namespace {
@@ -21,6 +22,16 @@ struct ChannelBuffers {
   UnsetVector<float> static_value, static_second;  ///< accumulator over the static emitters
   std::vector<std::shared_ptr<volume::DenseVolume>> pool;
 };
+
+/// Whether paths are searched by sectors: all of surfaces, of volumes those of `horizon`.
+bool needsBounds(const FieldSetup& setup) {
+  if (setup.terrain == nullptr || setup.columns.tilted) return false;
+  const auto& emitters = setup.scenario->emitters;
+  return setup.columns.every_height ||
+         std::any_of(emitters.begin(), emitters.end(), [](const scenario::Emitter& emitter) {
+           return propagation::modelInfo(emitter.propagation.model).casts_shadow;
+         });
+}
 
 class CpuEngine : public FieldEngine {
  public:
@@ -33,7 +44,7 @@ class CpuEngine : public FieldEngine {
         kept_looks_(static_cast<std::size_t>(std::max(0, slots - 1)), voxels_,
                     availableMemory_bytes().value_or(0)) {
     planChanged(true);
-    if (setup.columns.every_height && setup.terrain != nullptr) bounds_.emplace(setup.terrain->view());
+    if (needsBounds(setup)) bounds_.emplace(setup.terrain->view());
     const Dims& dims = setup.grid.dims;
     const std::vector<std::uint16_t>& valid = setup.columns.first_valid_k;
     for (int j = 0; j < dims.y && !valid.empty(); ++j) {
@@ -66,7 +77,7 @@ class CpuEngine : public FieldEngine {
   const FieldSetup& setup_;
   std::size_t voxels_;
   std::vector<int> first_row_k_;
-  std::optional<TerrainBounds> bounds_;  // of surfaces over terrain
+  std::optional<TerrainBounds> bounds_;  // see needsBounds()
   std::vector<EmitterGeometry> slots_;
   PowerCache<std::vector<float>> kept_power_;  // except the last slot, which emitters share
   LookWeightCache kept_looks_;                 // the same

@@ -11,7 +11,7 @@ namespace {
 using scenario::LandCoverView;
 using scenario::TerrainRaster;
 
-constexpr int kPosts = BlockCover::kPosts, kCrossings = BlockCover::kCrossings;
+constexpr int kPosts = BlockCover::kPosts;
 constexpr auto kFree_m = static_cast<float>(kClutterFree_m), kRounding_m = 0.05f;
 
 /// Coordinates of posts in cells, relative to the part's first cell.
@@ -20,14 +20,15 @@ struct CellTask {
   float first_m, per_m;
   float distance_m, columns_per_m, rows_per_m;
   float beside_m;
-  int columns;
+  int columns, crossings;  ///< numbers of posts
 };
 struct Cells {
   float part[kPosts];
   int column[kPosts], row[kPosts];
   int beside_column[kPosts],
       beside_row[kPosts];  ///< the same, or the next one, if that is as near as beside_m
-  int state[kPosts];       ///< 0: not raised; 1: raised; 2: perhaps
+  /// 0: not raised; 1: raised; 2: raised, and there is a next cell; 3: perhaps raised
+  int state[kPosts];
 };
 
 EMSCAPE_SIMD_CLONES void findCells(const CellTask& of, const float* range_m, Cells& cells) {
@@ -40,7 +41,7 @@ EMSCAPE_SIMD_CLONES void findCells(const CellTask& of, const float* range_m, Cel
               on_column_m = task.beside_m * (1 + along_y / (along_x + kLeast));
 #pragma omp simd
   for (int n = 0; n < kPosts; ++n) {
-    const bool is_on_column = n < task.columns, is_on_row = !is_on_column && n < kCrossings;
+    const bool is_on_column = n < task.columns, is_on_row = !is_on_column && n < task.crossings;
     const float near_x = (is_on_column ? kOnLine_m
                           : is_on_row  ? on_row_m
                                        : task.beside_m) *
@@ -58,9 +59,12 @@ EMSCAPE_SIMD_CLONES void findCells(const CellTask& of, const float* range_m, Cel
     cells.part[n] = part;
     cells.column[n] = column;
     cells.row[n] = row;
-    cells.beside_column[n] = column + (in_x < near_x ? -1 : in_x > 1 - near_x ? 1 : 0);
-    cells.beside_row[n] = row + (in_y < near_y ? -1 : in_y > 1 - near_y ? 1 : 0);
-    cells.state[n] = nearer > kFree_m + kRounding_m ? 1 : nearer > kFree_m - kRounding_m ? 2 : 0;
+    const int to_column = in_x < near_x ? -1 : in_x > 1 - near_x ? 1 : 0;
+    const int to_row = in_y < near_y ? -1 : in_y > 1 - near_y ? 1 : 0;
+    cells.beside_column[n] = column + to_column;
+    cells.beside_row[n] = row + to_row;
+    const int raised = (to_column | to_row) == 0 ? 1 : 2;
+    cells.state[n] = nearer > kFree_m + kRounding_m ? raised : nearer > kFree_m - kRounding_m ? 3 : 0;
   }
 }
 
@@ -84,8 +88,9 @@ BlockCover::BlockCover(const scenario::TerrainView& terrain) : terrain_(terrain)
 
 inline std::uint8_t BlockCover::cellAt(int column, int row) const {
   const LandCoverView& cover = terrain_.cover;
-  if (column < 0 || column >= cover.columns || row < 0 || row >= cover.rows) return LandCoverView::kNoClass;
-  return cover.cells[static_cast<long long>(row) * cover.columns + column];
+  const bool is_inside = (column >= 0) & (column < cover.columns) & (row >= 0) & (row < cover.rows);
+  return is_inside ? cover.cells[static_cast<long long>(row) * cover.columns + column]
+                   : LandCoverView::kNoClass;
 }
 
 /// @param surface_m  height of the surface model above the ground; NaN: unknown
@@ -103,34 +108,41 @@ float BlockCover::surface_m(const RasterLine& line, float part, float ground_msl
          ground_msl_m;
 }
 
-unsigned BlockCover::raise(const RasterLine& line, int columns, float distance_m, float beside_m,
-                           float base_msl_m, const float* range_m, float* height_m) const {
+EMSCAPE_SIMD_CLONES unsigned BlockCover::raise(const RasterLine& line, int columns, int crossings, int count,
+                                               float distance_m, float beside_m, float base_msl_m,
+                                               const float* range_m, float* height_m) const {
   double column = first_column_ + line.column * per_column_;
   if (column < 0 || column >= turn_cells_) column -= turn_cells_ * std::floor(column / turn_cells_);
   const double row = first_row_ + line.row * per_row_;
   const double first_column = std::floor(column), first_row = std::floor(row);
   Cells cells;
-  findCells(
-      {static_cast<float>(column - first_column), static_cast<float>(row - first_row),
-       static_cast<float>(line.column_length * per_column_), static_cast<float>(line.row_length * per_row_),
-       line.first_m, 1 / line.length_m, distance_m, columns_per_m_, rows_per_m_, beside_m, columns},
-      range_m, cells);
+  findCells({static_cast<float>(column - first_column), static_cast<float>(row - first_row),
+             static_cast<float>(line.column_length * per_column_),
+             static_cast<float>(line.row_length * per_row_), line.first_m, 1 / line.length_m, distance_m,
+             columns_per_m_, rows_per_m_, beside_m, columns, crossings},
+            range_m, cells);
   const int west = static_cast<int>(first_column), south = static_cast<int>(first_row);
-  unsigned doubtful = 0;
+  unsigned doubtful = 0, others = 0;
+  float raise_m[kPosts] = {};
+  for (int n = 0; n < count; ++n)
+    raise_m[n] = classes_.raise_m(cellAt(west + cells.column[n], south + cells.row[n]));
+  const int last_simple = terrain_.surface_count > 0 ? 0 : 1;
+#pragma omp simd reduction(| : others)
   for (int n = 0; n < kPosts; ++n) {
-    if (cells.state[n] == 0 || !(height_m[n] > -HUGE_VALF)) continue;
+    const int state = cells.state[n];
+    height_m[n] += state == 1 && state <= last_simple ? raise_m[n] : 0.0f;
+    others |= (state > last_simple ? 1u : 0u) << n;
+  }
+  for (others &= (1u << count) - 1; others != 0; others &= others - 1) {
+    const int n = __builtin_ctz(others);
+    if (!(height_m[n] > -HUGE_VALF)) continue;
     const int i = west + cells.column[n], j = south + cells.row[n];
     const int beside_i = west + cells.beside_column[n], beside_j = south + cells.beside_row[n];
     const std::uint8_t here = cellAt(i, j);
-    if (cells.state[n] == 1 && beside_i == i && beside_j == j &&
-        terrain_.surface_count == 0) {  // most of them
-      height_m[n] += classes_.raise_m(here);
-      continue;
-    }
     const float above_m =
         terrain_.surface_count > 0 ? surface_m(line, cells.part[n], height_m[n] + base_msl_m) : NAN;
     const float here_m = heightOf(here, above_m);
-    float most_m = here_m, least_m = cells.state[n] == 1 ? here_m : 0;
+    float most_m = here_m, least_m = cells.state[n] < 3 ? here_m : 0;
     for (const std::uint8_t cell : {cellAt(beside_i, j), cellAt(i, beside_j), cellAt(beside_i, beside_j)}) {
       const float beside = heightOf(cell, above_m);
       most_m = std::max(most_m, beside);

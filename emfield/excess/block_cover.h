@@ -15,20 +15,21 @@ struct RasterLine {
 /// millimetres: where that may decide on the class of the ground, the higher clutter is taken.
 class BlockCover {
  public:
-  /// Posts of a part: first those on columns of the raster, then on rows, then others.
-  static constexpr int kPosts = 16, kCrossings = 8;
+  static constexpr int kPosts = 16;  ///< most posts of a part
 
   /// @param terrain  with rasters and clutter; must outlive this object
   explicit BlockCover(const scenario::TerrainView& terrain);
 
-  /// @param columns     number of posts on columns
+  /// @param columns     number of posts on columns of the raster, the first ones
+  /// @param crossings   the same with those on rows, the next ones
+  /// @param count       of all posts
   /// @param distance_m  of the path
   /// @param beside_m    largest distance from the profile's path
   /// @param base_msl_m  to which heights are relative
-  /// @param height_m    kPosts; raised. Posts at -infinity are none
+  /// @param height_m    kPosts, of which `count` are raised. Posts at -infinity are none
   /// @return bit i: the height of post i is an upper bound
-  unsigned raise(const RasterLine& line, int columns, float distance_m, float beside_m, float base_msl_m,
-                 const float* range_m, float* height_m) const;
+  unsigned raise(const RasterLine& line, int columns, int crossings, int count, float distance_m,
+                 float beside_m, float base_msl_m, const float* range_m, float* height_m) const;
 
  private:
   std::uint8_t cellAt(int column, int row) const;

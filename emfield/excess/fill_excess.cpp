@@ -52,7 +52,8 @@ template <class Model>
 std::vector<char> fillBySearch(const ExcessTask<Model>& task, const TerrainBounds* bounds,
                                const ExcessOutput& out) {
   if constexpr (std::is_same_v<Model, propagation::DiffractionExcess>) {
-    if (bounds != nullptr && bounds->isUsable()) return fillSurfaceDiffraction(task, *bounds, out);
+    if (bounds != nullptr && bounds->isUsable() && task.grid.columns.of_surface != nullptr)
+      return fillSurfaceDiffraction(task, *bounds, out);
   }
   return {};
 }

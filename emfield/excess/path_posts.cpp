@@ -169,45 +169,48 @@ EMSCAPE_SIMD_CLONES void PathPosts::read(int block) {
 EMSCAPE_SIMD_CLONES void PathPosts::raise(int block) {
   raised_for_[block] = number_;
   doubtful_[block] =
-      cover_->raise(lineIn(block), columns_[block], path_->distance_m, beside_m_, terrain_.base_msl_m(),
-                    range_m(block), height_m_.data() + block * kOfBlock);
+      cover_->raise(lineIn(block), columns_[block], kCrossings, used_[block], path_->distance_m, beside_m_,
+                    terrain_.base_msl_m(), range_m(block), height_m_.data() + block * kOfBlock);
 }
 
 EMSCAPE_SIMD_CLONES void PathPosts::readClutterPosts(int block) {
   const GroundPosts& ground = obstacles_.ground;
   const float* const last_m = obstacles_.posts.last_m();
-  const Part part = partIn(block);
-  float range_m[kOfBlock], height_m[kOfBlock];
-  int count = 0;
-  const auto raiseAll = [&] {
-    if (count == 0) return;
-    std::fill_n(range_m, kCrossings, range_m[kCrossings]);
-    std::fill(range_m + kCrossings + count, range_m + kOfBlock, range_m[kCrossings]);
-    std::fill_n(height_m, kCrossings, -HUGE_VALF);
-    std::fill(height_m + kCrossings + count, height_m + kOfBlock, -HUGE_VALF);
-    const unsigned doubtful = cover_->raise(lineIn(block), 0, path_->distance_m, beside_m_,
-                                            terrain_.base_msl_m(), range_m, height_m);
-    for (int i = kCrossings; i < kCrossings + count; ++i) {
-      is_left_ = is_left_ || std::isnan(height_m[i]);
-      clutter_posts_.push_back({block, range_m[i], height_m[i], (doubtful >> i & 1) != 0});
-    }
-    count = 0;
-  };
   if (clutter_m_.empty()) {
     for (int n = 0; n < ground.clutterPosts(); ++n) {
       const double at_m = ground.clutterPost_m(n, path_->exact_distance_m);
       if (isClutterAt(at_m, path_->exact_distance_m)) clutter_m_.push_back(static_cast<float>(at_m));
     }
   }
+  constexpr int kMost = (kMostClutterPosts + kOfBlock - 1) / kOfBlock * kOfBlock;
+  float range_m[kMost], height_m[kMost];
+  int count = 0;
   for (const float here_m : clutter_m_) {
     const bool is_before = block > 0 && !(here_m > last_m[block - 1]);
     const bool is_beyond = block + 1 < path_->blocks && here_m > last_m[block];
-    if (is_before || is_beyond) continue;
-    if (count == kBlock) raiseAll();
-    range_m[kCrossings + count] = here_m;
-    height_m[kCrossings + count++] = heightAt(part, part.at(here_m));
+    range_m[count] = here_m;
+    count += is_before || is_beyond ? 0 : 1;
   }
-  raiseAll();
+  const Part part = partIn(block);
+  const Parabola<float> column = part.column, row = part.row;
+  const float* const corner_msl_m = part.chord.corner_msl_m;
+  const int row_posts = terrain_.rowPosts();
+  const float base_msl_m = terrain_.base_msl_m();
+  for (int i = count; i % kOfBlock != 0; ++i) range_m[i] = height_m[i] = 0;
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    const float at = part.at(range_m[i]);
+    height_m[i] = bilinearHeight(corner_msl_m, row_posts, column.at(at), row.at(at)) - base_msl_m;
+  }
+  for (int begin = 0; begin < count; begin += kOfBlock) {
+    const int posts = std::min(count - begin, kOfBlock);
+    const unsigned doubtful = cover_->raise(lineIn(block), 0, 0, posts, path_->distance_m, beside_m_,
+                                            base_msl_m, range_m + begin, height_m + begin);
+    for (int i = 0; i < posts; ++i) {
+      is_left_ = is_left_ || std::isnan(height_m[begin + i]);
+      clutter_posts_.push_back({block, range_m[begin + i], height_m[begin + i], (doubtful >> i & 1) != 0});
+    }
+  }
 }
 
 }  // namespace emscape::emfield

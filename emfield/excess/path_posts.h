@@ -23,7 +23,7 @@ class PathPosts {
  public:
   /// Posts of a path in a block: crossings, of which there are rarely more, and regular posts near the
   /// emitter; of raised profiles elsewhere the beginning of a chord.
-  static constexpr int kCrossings = BlockCover::kCrossings, kOfBlock = BlockCover::kPosts;
+  static constexpr int kCrossings = 8, kOfBlock = BlockCover::kPosts;
 
   /// All must outlive this object.
   /// @param cover  by which profiles are raised; null: they are not

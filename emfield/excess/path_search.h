@@ -43,6 +43,21 @@ class PathSearch {
     if (most.is_bound) posts_.leave();
   }
 
+  /// A lower bound, from the posts of one block without their clutter.
+  template <class ValueOf>
+  float leastOf(int block, const ValueOf& valueOf) const {
+    posts_.read(block);
+    if (posts_.areRaised() && posts_.isRaised(block)) return -HUGE_VALF;
+    const float *const range_m = posts_.range_m(block), *const height_m = posts_.height_m(block);
+    float largest = -HUGE_VALF;
+#pragma omp simd reduction(max : largest)
+    for (int i = 0; i < PathPosts::kCrossings; ++i) {
+      const float value = valueOf(range_m[i], height_m[i]);
+      largest = value > largest ? value : largest;
+    }
+    return largest;
+  }
+
   /// The same among the posts of one block.
   template <class ValueOf>
   void visit(int block, const ValueOf& valueOf, Maximum& most) const {

@@ -109,9 +109,10 @@ PathSectors::PathSectors(const Station& station, const ExcessGrid& grid, int cou
     if (sector_of[column] < 0) return;
     const FastInverse point = grid.coordinatesOf(station, column, 0);
     const double sine = sineBetween(middles[sector_of[column]], {point.sin_azimuth, point.cos_azimuth});
-    paths_[of_part[sector_of[column]]++] = {point.distance_m, grid.columns.of_surface[column].base_msl_m,
-                                            static_cast<float>(sine * (1 + sine * sine / 6)),
-                                            grid.ground_msl_m[column], c};
+    const PositionColumn* const of_surface = grid.columns.of_surface;
+    paths_[of_part[sector_of[column]]++] = {
+        point.distance_m, of_surface != nullptr ? of_surface[column].base_msl_m : 0,
+        static_cast<float>(sine * (1 + sine * sine / 6)), grid.ground_msl_m[column], c};
   });
 }
 

@@ -1,5 +1,5 @@
-/// The columns of a surface by the direction of their paths from a station: columns of one narrow sector
-/// share the search of the terrain.
+/// Vertical columns by the direction of their paths from a station: columns of one narrow sector share the
+/// search of the terrain.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace emscape::emfield {
 /// The path to a column.
 struct SectorPath {
   double distance_m;   ///< along the ground
-  double base_msl_m;   ///< height of the column's t = 0
+  double base_msl_m;   ///< height of the column's t = 0, of a surface
   float aside_rad;     ///< azimuth relative to the sector's middle
   float ground_msl_m;  ///< below the column
   int column;

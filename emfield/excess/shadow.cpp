@@ -16,7 +16,8 @@ void findShadowEdgesCpu(const Station& station, const GroundPosts& ground, const
   for (std::size_t i = 0; i < terms.size(); ++i) terms[i] = task.geometry().termsAt(ground.ranges_m[i]);
   task.terms = terms.data();
   std::vector<char> is_left;  // empty: all are
-  if (bounds != nullptr && bounds->isUsable()) is_left = findSurfaceShadows(task, grid, *bounds, edges_m);
+  if (bounds != nullptr && bounds->isUsable() && grid.part.isAll())
+    is_left = findSurfaceShadows(task, grid, *bounds, edges_m);
   parallelFor(static_cast<int>(grid.column_count), 64, [&](int begin, int end) {
     std::vector<float> heights_m(terms.size());
     const auto slopeTo = [&](const FastInverse& path, int count) {

@@ -121,8 +121,8 @@ struct EarthBelowPath {
     const float slope = (rx_m - tx_m) / d;
     const auto heightOf = [=](float range, float height) { return height - tx_m - slope * range; };
     Maximum highest{0, std::min(highest_block, path.blocks - 1)};
-    search.visit(highest.block, heightOf, highest);
-    if (!highest.is_bound && isClearHoweverShared(trend, rx_m, highest.value)) return true;
+    highest.value = std::max(highest.value, search.leastOf(highest.block, heightOf));
+    if (isClearHoweverShared(trend, rx_m, highest.value)) return true;
     search(
         [=](float lowered, float, float first_m, float last_m) {
           return lowered + k * last_m * last_m - tx_m - slope * (slope > 0 ? first_m : last_m);
@@ -207,7 +207,7 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const SectorObstac
     path.exact_distance_m = to->distance_m;
     path.distance_m = static_cast<float>(to->distance_m);
     path.before = sector.task.ground.lastBefore(to->distance_m);
-    path.last_m = path.distance_m * (1 - 3e-7f);
+    path.last_m = path.distance_m * static_cast<float>(propagation::kBeforeReceivers);
     path.aside = to->aside_rad * per_rad;
     if (path.before < kMinPosts || path.before + 1 >= terrain.posts()) continue;
     const bool is_beyond = path.last_m > obstacles.posts.farthest_m()[path.before];

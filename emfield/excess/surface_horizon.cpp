@@ -68,12 +68,10 @@ EMSCAPE_SIMD_CLONES void setSlopeBounds(const ObstacleTerms& obstacles, const Se
   }
 }
 
-/// True if no height of a column is between two edges.
+/// True if no height of a column, which ascend, is between two edges.
 bool areAlike(const ExcessGrid& grid, float lower_m, float upper_m) {
-  for (int k = 0; k < grid.layers; ++k) {
-    if (grid.t_m[k] >= lower_m && !(grid.t_m[k] >= upper_m)) return false;
-  }
-  return true;
+  const float *const end = grid.t_m + grid.layers, *const above = std::lower_bound(grid.t_m, end, lower_m);
+  return above == end || *above >= upper_m;
 }
 
 /// A range that contains the steepest slope to the posts of a path.

@@ -1,4 +1,4 @@
-/// Stage 2 of the model `horizon` over a surface: most columns are decided by bounds of the slopes to the
+/// Stage 2 of the model `horizon` over many vertical columns: most are decided by bounds of the slopes to the
 /// terrain, which the paths of a sector share; of the others a part of the path is read.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace emscape::emfield {
 
-/// Sets the edges of shadow of the columns of a surface. The heights of a column are above or below its edge
+/// Sets the edges of shadow of vertical columns. The heights of a column are above or below its edge
 /// as they are by ShadowTask::edge_m(); the edge may differ between them.
 /// @param task    with terms of the posts
 /// @param bounds  usable

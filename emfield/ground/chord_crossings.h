@@ -14,6 +14,7 @@
 
 #include "emfield/ground/terrain_walk.h"
 #include "emscape/base/host_device.h"
+#include "propagation/terrain_profile.h"
 
 namespace emscape::emfield {
 
@@ -130,9 +131,9 @@ struct ChordCrossings {
 /// Range (m) of a crossing, beyond the emitter and before the receivers, also as float.
 EMSCAPE_HD inline double crossingRange_m(double chord_begin_m, double chord_m, float part,
                                          double receivers_m) {
-  constexpr double kFirst_m = 0.01, kBefore = 1 - 3e-7;
+  constexpr double kFirst_m = 0.01;
   const double range_m = chord_begin_m + chord_m * static_cast<double>(part);
-  const double last_m = receivers_m * kBefore;
+  const double last_m = receivers_m * propagation::kBeforeReceivers;
   return range_m < last_m ? (range_m > kFirst_m ? range_m : kFirst_m) : last_m;
 }
 

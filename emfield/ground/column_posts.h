@@ -49,7 +49,7 @@ class ColumnPosts {
       OtherPosts others{ground_.ranges_m, ground_.has_clutter ? &clutter : nullptr};
       others.regular = n == 0 ? 1 : ground_.lastBefore(begin_m) + 1;
       others.end = is_last ? regular : ground_.lastBefore(begin_m + of_path.length_m) + 1;
-      if (with_crossings) others.end = n == 0 ? smaller(smaller(ground_.near_count, others.end), 128) : 0;
+      if (with_crossings) others.end = n == 0 ? smaller(ground_.near_count, others.end) : 0;
       if (with_beginning && others.regular < others.end && ground_.ranges_m[others.regular] <= begin_m)
         ++others.regular;
       others.end_m = is_last ? HUGE_VAL : begin_m + of_path.length_m;
@@ -251,8 +251,9 @@ class ColumnPosts {
   }
   static EMSCAPE_HD std::uint64_t bitOf(int chord) { return 1ull << smaller(chord, 62); }
   EMSCAPE_HD bool isRegular(int chord) const { return (regular_chords_ & bitOf(chord)) != 0; }
-  /// A post may be at the receivers in float.
-  EMSCAPE_HD float farthest_m() const { return static_cast<float>(path_.distance_m) * (1 - 2.4e-7f); }
+  EMSCAPE_HD float farthest_m() const {
+    return static_cast<float>(path_.distance_m) * static_cast<float>(propagation::kBeforeReceivers);
+  }
 
   /// Height above mean sea level (m), with the clutter where that counts; NaN over missing terrain.
   EMSCAPE_NOINLINE EMSCAPE_HD float heightAt(const TerrainChord& chord, double range_m) const {

@@ -222,8 +222,11 @@ int readProfileCpu(const Station& station, const GroundPosts& ground, const Fast
       float near_msl_m[kMaxNear];
       if (crossings.count() <= ground.maxCrossings(chord_m) &&
           readCrossings(crossings, begin_m, chord_m, path.distance_m, memory,
-                        {range_m + count + near, height_msl_m + count + near}) &&
-          readInRaster(chord.in_raster, ground.ranges_m + 1, near, near_msl_m)) {
+                        {range_m + count + near, height_msl_m + count + near})) {
+        if (!readInRaster(chord.in_raster, ground.ranges_m + 1, near, near_msl_m)) {  // beside a void
+          for (int i = 0; i < near; ++i)
+            near_msl_m[i] = chord.heightAt(ground.terrain, ground.ranges_m[1 + i]);
+        }
         insert(ground.ranges_m + 1, near_msl_m, near, crossings.count(),
                {range_m + count, height_msl_m + count});
         count += near + crossings.count();

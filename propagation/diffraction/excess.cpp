@@ -139,7 +139,7 @@ class LaneColumn {
     const float* const heights_msl_m = column_.profile.height_msl_m + 1;
     float *const range_m = range_m_, *const above_tx_m = posts_.above_tx_m;
     const float base_msl_m = base_msl_m_, tx_m = tx_m_;
-    const float farthest_m = distance_m_ * (1 - 2.4e-7f);  // a post may be at the receivers in float
+    const float farthest_m = distance_m_ * static_cast<float>(kBeforeReceivers);
     const int count = count_;
     float unknown = base_msl_m - base_msl_m + (heights_msl_m[count] - heights_msl_m[count]);
 #pragma omp simd reduction(+ : unknown)
@@ -186,8 +186,8 @@ class LaneColumn {
   /// its slope, and without the earth's bulge slope and height. Each falls faster with the slope for farther
   /// posts. A post that does not exceed all nearer ones for the lowest receiver therefore exceeds none of
   /// them for a higher one, and one that does not exceed all farther ones for the highest receiver none of
-  /// those for a lower one. Posts are compared with those of other lanes only. Receivers below the steepest
-  /// ray need the slopes, those above it the heights over sqrt(d1 d2).
+  /// those for a lower one. Posts are compared with those of other blocks of lanes only. Receivers below the
+  /// steepest ray need the slopes, those above it the heights over sqrt(d1 d2).
   /// @param in_earth  also the plain measures
   void thin(float lowest_slope, float highest_slope, bool in_earth) {
     struct Largest {

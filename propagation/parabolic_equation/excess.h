@@ -48,9 +48,8 @@ struct PeExcess {
   /// @param excess_db  one per voxel; NaN over missing terrain
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db,
                                  const MechanismStore& mechanisms = {}) const {
-    static_assert(ExcessScratch::kPostNumbers == 5);  // `diffraction` has the first three
-    float* const numbers = scratch.post_numbers + 3 * scratch.posts;
-    const PeSight sight = others.sightOf(column, {numbers, numbers + scratch.posts});
+    const PeSight sight =
+        others.sightOf(column, {scratch.post_numbers, scratch.post_numbers + scratch.posts});
     if (!sight.isKnown()) {
       for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
       return kMissingTerrain;

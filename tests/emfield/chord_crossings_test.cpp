@@ -262,6 +262,39 @@ TEST(ProfileAtCrossings, ReadsRegularPostsBesideAVoid) {
   EXPECT_GE(unknown, 10);
 }
 
+/// Hills with a void post, below which a second raster is whole.
+class FilledHole : public MadeTerrain {
+ public:
+  FilledHole()
+      : MadeTerrain(44.5, -71.5, 0.5,
+                    [](double east_deg, double north_deg) {
+                      const bool is_void = std::hypot(east_deg - 0.25, north_deg - 0.25) < 1e-4;
+                      return is_void ? std::nan("") : heightAt(east_deg, north_deg);
+                    }),
+        whole(44.5, -71.5, 0.5, heightAt),
+        rasters_{MadeTerrain::view().rasters[0], whole.view().rasters[0]} {}
+  scenario::TerrainView view() const override { return {rasters_, 2}; }
+
+  const MadeTerrain whole;
+
+ private:
+  static double heightAt(double east_deg, double north_deg) {
+    return 300 + 200 * std::sin(70 * east_deg) * std::cos(90 * north_deg);
+  }
+
+  const scenario::TerrainRaster rasters_[2];
+};
+
+TEST(ProfileAtCrossings, KeepsCrossingsWhereOnlyPostsInTheEmittersCellAreBesideAVoid) {
+  const FilledHole terrain;
+  const double height_msl_m = terrain.whole.heightMsl_m(44.5, -71.5) + 20;
+  const RandomPath path{{{44.5002, -71.4998, height_msl_m}, height_msl_m},
+                        {{44.6, -71.37, height_msl_m}, height_msl_m}};
+  const PathProfile with_void = profileOf(terrain, path, true), whole = profileOf(terrain.whole, path, true);
+  EXPECT_EQ(with_void.ranges_m, whole.ranges_m);
+  EXPECT_EQ(with_void.ground_msl_m, whole.ground_msl_m);
+}
+
 /// Height (m) above the end of a path at which its shadow ends, over posts at some ranges.
 double shadowEdge_m(const PathProfile& path, const std::vector<double>& ranges_m,
                     const std::vector<double>& ground_msl_m) {

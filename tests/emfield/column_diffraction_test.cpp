@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "emfield/excess/emitter_excess.h"
+#include "emfield/excess/shadow.h"
 #include "emfield/excess/shadow_edge.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/test_scenario.h"
@@ -39,9 +40,9 @@ struct SeenField {
 
   SeenField(propagation::PropagationModel model, double side_m, double height_agl_m, double frequency_hz,
             bool has_hole = false, FrameKind frame = FrameKind::altitude,
-            std::shared_ptr<const MadeTerrain> over = nullptr)
+            std::shared_ptr<const MadeTerrain> over = nullptr, Dims dims = {14, 11, 40})
       : terrain(over ? over : terrainOf(has_hole)) {
-    scenario = testing::emptyScenario(frame, 44.5, -71.5, {side_m, side_m, 4000}, {14, 11, 40});
+    scenario = testing::emptyScenario(frame, 44.5, -71.5, {side_m, side_m, 4000}, dims);
     scenario::Emitter emitter = testing::plainEmitter("radar", 0);
     emitter.frequency_hz = frequency_hz;
     emitter.propagation.model = model;
@@ -287,6 +288,29 @@ TEST(ShadowEdge, PostsBelowEveryLineOfSightAreOfNoAccount) {
   }
   EXPECT_GT(left_out, 3000);
   EXPECT_GT(in_shadow, 100);
+}
+
+TEST(ShadowEdge, OfManyColumnsDecidesEveryVoxelAsThatOfWholePaths) {
+  for (const double height_agl_m : {15.0, 1500.0}) {
+    const SeenField setup(propagation::PropagationModel::horizon, 70e3, height_agl_m, 1e9, true,
+                          FrameKind::altitude, nullptr, {130, 120, 40});
+    const TerrainBounds bounds(setup.terrain->view());
+    std::vector<float> whole_m(setup.columns.count()), by_sectors_m(setup.columns.count());
+    findShadowEdgesCpu(setup.station, setup.ground, setup.grid, nullptr, whole_m.data());
+    findShadowEdgesCpu(setup.station, setup.ground, setup.grid, &bounds, by_sectors_m.data());
+    int in_shadow = 0, other_edges = 0;
+    for (std::size_t c = 0; c < setup.columns.count(); ++c) {
+      ASSERT_EQ(std::isnan(by_sectors_m[c]), std::isnan(whole_m[c])) << c;
+      other_edges += std::abs(by_sectors_m[c] - whole_m[c]) > 0.01f;
+      for (int k = 0; k < setup.grid.layers; ++k) {
+        const float t_m = setup.grid.t_m[k];
+        ASSERT_EQ(t_m >= by_sectors_m[c], t_m >= whole_m[c]) << c << ' ' << k;
+        in_shadow += t_m < whole_m[c];
+      }
+    }
+    EXPECT_GT(in_shadow, 1000);
+    EXPECT_GT(other_edges, 1000);  // decided by bounds
+  }
 }
 
 }  // namespace
