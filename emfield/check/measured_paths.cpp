@@ -239,6 +239,27 @@ struct Computed {
   std::vector<std::string> warnings, refusals;  ///< refusals by model
 };
 
+/// The warnings of all paths, each with the number of paths that have it with any numbers.
+std::vector<std::string> warningsOfPaths(const std::vector<Computed>& found) {
+  const auto withoutNumbers = [](std::string text) {
+    const auto isOfNumber = [](char c) { return (c >= '0' && c <= '9') || c == '.' || c == '-'; };
+    text.erase(std::remove_if(text.begin(), text.end(), isOfNumber), text.end());
+    return text;
+  };
+  std::map<std::string, std::set<std::size_t>> paths;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    for (const std::string& warning : found[i].warnings) paths[withoutNumbers(warning)].insert(i);
+  }
+  std::set<std::string> warnings;
+  for (const Computed& computed : found) {
+    for (const std::string& warning : computed.warnings) {
+      warnings.insert(fmt::format("{} (on {} of {} paths)", warning, paths[withoutNumbers(warning)].size(),
+                                  found.size()));
+    }
+  }
+  return {warnings.begin(), warnings.end()};
+}
+
 /// Sets distance, terrain and losses of a path whose ends are set.
 Computed compute(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                  const std::vector<propagation::PropagationModel>& models, const scenario::Terrain* terrain,
@@ -393,12 +414,12 @@ MeasuredCheck checkMeasuredPaths(const std::string& file, const scenario::Scenar
       errors.all.add(error_db);
       errors.by_terrain[static_cast<std::size_t>(path.terrain)].add(error_db);
       if (errors.refusal.empty()) errors.refusal = found[i].refusals[m];
-      warnings.insert(found[i].warnings.begin(), found[i].warnings.end());
     }
     errors.all.finish();
     for (ErrorStatistics& statistics : errors.by_terrain) statistics.finish();
   }
   check.warnings.assign(warnings.begin(), warnings.end());
+  for (std::string& warning : warningsOfPaths(found)) check.warnings.push_back(std::move(warning));
   return check;
 }
 

@@ -9,6 +9,7 @@
 
 #include "emfield/link/path_decision.h"
 #include "emfield/link/path_verdict.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {
@@ -39,6 +40,14 @@ std::array<LossCause, 3> lossesOf(const PathBudget& budget, double ways) {
            {PathCause::pointing, ways * std::max(-pattern_db, 0.0)}}};
 }
 
+/// The echo over clutter, noise and jamming (dB), from that over clutter and noise.
+double underJammingDb(const PathBudget& budget, double in_clutter_db) {
+  const std::optional<double> jamming_to_echo_db = termOf(budget, "jammer_to_signal_db");
+  if (!jamming_to_echo_db) return in_clutter_db;
+  const double response_db = termOf(budget, "filter_response_db").value_or(0);
+  return -ratioToDb(dbToRatio(-in_clutter_db) + dbToRatio(*jamming_to_echo_db - response_db));
+}
+
 Decision ofLosses(const PathBudget& budget, double ways, double missing_db) {
   const auto losses = lossesOf(budget, ways);
   double all_db = 0;
@@ -63,7 +72,8 @@ Decision decide(const PathBudget& budget, Quantity quantity, double threshold) {
   const bool is_detection = quantity == Quantity::detection_probability;
   const double needed_db = is_detection ? termOf(budget, "required_snr_db").value_or(0) : threshold;
   const double in_clutter_db = termOf(budget, "sclnr_db").value_or(*snr_db);
-  if (is_detection && !budget.unheard.empty() && in_clutter_db >= needed_db) return {PathCause::range};
+  if (is_detection && !budget.unheard.empty() && underJammingDb(budget, in_clutter_db) >= needed_db)
+    return {PathCause::range};
   const bool is_jammed = !budget.jamming.strongest.empty() && scenario::needsJammer(quantity);
   if (is_jammed && (is_detection ? budget.jamming.unjammed_probability >= threshold : *snr_db >= needed_db))
     return {PathCause::jamming};

@@ -110,7 +110,7 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
     if (!terminal.is_larger && !model.on_smooth_surface && terrain_db > kGrazing_db &&
         std::isfinite(terrain_db)) {
       excess.warnings.push_back(fmt::format(
-          "emitter '{}': terrain costs {:.1f} dB on this path, and {:.1f} dB of P.2108-1 are added to it: on "
+          "emitter '{}': terrain costs {:.1f} dB, and {:.1f} dB of P.2108-1 are added to it: on "
           "measured paths that terrain blocks, such sums were 9 to 20 dB too high in the mean; 'ground: "
           "{{terminal_clutter_combine: larger}}' takes the larger of both",
           emitter.name, terrain_db, loss_db));

@@ -33,6 +33,16 @@ std::string statisticsText(const ErrorStatistics& statistics) {
                      statistics.sd_db, statistics.rms_db);
 }
 
+/// Without the emitter, which is not that of the measurement.
+std::vector<std::string> warningsOf(const MeasuredReport& report) {
+  std::vector<std::string> warnings = joinedWarnings(report.check.warnings);
+  for (std::string& warning : warnings) {
+    const std::size_t end = warning.find("': ");
+    if (warning.rfind("emitter '", 0) == 0 && end != std::string::npos) warning.erase(0, end + 3);
+  }
+  return warnings;
+}
+
 }  // namespace
 
 Json toJson(const MeasuredReport& report) {
@@ -67,7 +77,7 @@ Json toJson(const MeasuredReport& report) {
           {"rows_selected", report.check.selected},
           {"models", std::move(models)},
           {"paths", std::move(paths)},
-          {"warnings", joinedWarnings(report.check.warnings)}};
+          {"warnings", warningsOf(report)}};
 }
 
 std::string measuredText(const MeasuredReport& report) {
@@ -97,7 +107,7 @@ std::string measuredText(const MeasuredReport& report) {
   out.add(
       "\nclear: no terrain within 0.6 radii of the first Fresnel zone; blocked: terrain or the earth's bulge "
       "above the ray; rms^2 = mean^2 + sd^2\n");
-  for (const std::string& warning : joinedWarnings(report.check.warnings)) out.add("warning: {}\n", warning);
+  for (const std::string& warning : warningsOf(report)) out.add("warning: {}\n", warning);
   return out.take();
 }
 

@@ -11,40 +11,12 @@
 #include "recording/common/ticks.h"
 #include "recording/common/track_recorder.h"
 #include "scenario/file/far_outside.h"
+#include "scenario/file/radar_warnings.h"
+#include "scenario/file/warning_of_items.h"
 #include "scenario/scan/scan_sampling.h"
 
 namespace emscape::scenario {
 namespace {
-
-/// A warning of one kind about any number of items of a scenario.
-class WarningOfItems {
- public:
-  /// @param text  what is said of this item; that of the first item is shown
-  void add(const SourceLocation& location, const std::string& item, const std::string& text) {
-    if (items_.empty()) {
-      location_ = location;
-      text_ = text;
-    }
-    items_.push_back("'" + item + "'");
-  }
-
-  void addTo(document::ProblemList& problems) const {
-    constexpr std::size_t kMaxNames = 5;
-    if (items_.empty()) return;
-    std::string text = text_;
-    if (items_.size() > 1) {
-      const auto end = items_.begin() + static_cast<std::ptrdiff_t>(std::min(items_.size(), kMaxNames));
-      text += fmt::format("; likewise {}", fmt::join(items_.begin() + 1, end, ", "));
-      if (items_.size() > kMaxNames) text += fmt::format(" and {} more", items_.size() - kMaxNames);
-    }
-    problems.addWarning(location_, text);
-  }
-
- private:
-  SourceLocation location_;
-  std::string text_;
-  std::vector<std::string> items_;  ///< names in quotation marks
-};
 
 void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<Section> sections = root.sections("emitters");
@@ -167,8 +139,6 @@ void warnOfAntennaFrequencies(const Scenario& scenario, const Section& root, Par
   warning.addTo(context.problems);
 }
 
-constexpr double kNarrow_hz = 100;  ///< no receiver of a radar is, no noise of a jammer
-
 /// Warns about jammers of a few hertz, as 30 for 30e6 Hz, and about those without a bandwidth.
 void warnOfNarrowJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<Section> sections = root.sections("emitters");
@@ -192,23 +162,6 @@ void warnOfNarrowJammers(const Scenario& scenario, const Section& root, ParseCon
   }
   of_narrow.addTo(context.problems);
   of_none.addTo(context.problems);
-}
-
-/// Warns about receivers of radars of a few hertz, as 1.0 for 1.0e6 Hz.
-void warnOfNarrowReceivers(const Scenario& scenario, const Section& root, ParseContext& context) {
-  const std::vector<Section> sections = root.sections("emitters");
-  WarningOfItems warning;
-  for (std::size_t i = 0; i < sections.size(); ++i) {
-    const Emitter& radar = scenario.emitters[i];
-    const double bandwidth_hz = radar.receiver.bandwidth_hz;
-    if (radar.kind != EmitterKind::radar || bandwidth_hz >= kNarrow_hz) continue;
-    warning.add(
-        sections[i].section("receiver").locationOf("bandwidth_hz"), radar.name,
-        fmt::format("the receiver of radar '{}' is {:g} Hz wide, narrower than that of any radar: its "
-                    "noise is too low; 'bandwidth_hz' is in hertz",
-                    radar.name, bandwidth_hz));
-  }
-  warning.addTo(context.problems);
 }
 
 void warnOfLongStep(const Scenario& scenario, const Section& root, ParseContext& context) {
@@ -485,7 +438,7 @@ void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseCon
   warnOfIdleJammers(scenario, root, context);
   warnOfGains(scenario, root, context);
   warnOfAntennaFrequencies(scenario, root, context);
-  warnOfNarrowReceivers(scenario, root, context);
+  addRadarWarnings(scenario, root, context);
   warnOfNarrowJammers(scenario, root, context);
   if (context.read_for == ReadFor::series) warnOfLongStep(scenario, root, context);
   warnOfTargetsTakenAsSteady(scenario, root, context);

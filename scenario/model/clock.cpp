@@ -26,8 +26,8 @@ double secondsOf(const std::string& text, const std::string& whole, const Clock&
   const std::string fault = time_ms ? "the scenario has no epoch" : utcFault(text);
   throw Error(
       ErrorCode::usage,
-      fmt::format("times '{}': '{}' is not a time in seconds or UTC{}; write BEGIN:END:STEP, BEGIN:END "
-                  "or T, such as 0:90:0.5, '1 min' or 2026-06-01T06:01:10Z",
+      fmt::format("times '{}': '{}' is not a time in seconds or UTC{}; write BEGIN:END:STEP, BEGIN:END, "
+                  "T or a list of them, such as 0:90:0.5, '1 min', 10,25,40 or 2026-06-01T06:01:10Z",
                   whole, text, fault.empty() ? "" : ": " + fault));
 }
 
@@ -110,6 +110,21 @@ std::vector<double> timesOf(const Clock& clock) {
 }
 
 std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s) {
+  if (text.find(',') != std::string::npos) {
+    std::vector<double> times_s;
+    for (std::size_t begin = 0; begin <= text.size();) {
+      const std::size_t end = std::min(text.find(',', begin), text.size());
+      const std::vector<double> part_s = parseTimes(text.substr(begin, end - begin), clock, limit_s);
+      if (!times_s.empty() && !(part_s.front() > times_s.back())) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("times '{}': {:.10g} s follows {:.10g} s; write them in ascending order",
+                                text, part_s.front(), times_s.back()));
+      }
+      times_s.insert(times_s.end(), part_s.begin(), part_s.end());
+      begin = end + 1;
+    }
+    return times_s;
+  }
   std::vector<double> values;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = partEnd(text, begin);
@@ -117,7 +132,8 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock, doub
     begin = end + 1;
   }
   if (values.size() > 3) {
-    throw Error(ErrorCode::usage, fmt::format("times '{}': write BEGIN:END:STEP, BEGIN:END or T", text));
+    throw Error(ErrorCode::usage,
+                fmt::format("times '{}': write BEGIN:END:STEP, BEGIN:END, T or a list A,B,C", text));
   }
   for (std::size_t i = 0; i < std::min<std::size_t>(values.size(), 2); ++i) {
     const std::string fault = timeFault(clock, values[i], limit_s);

@@ -87,6 +87,11 @@ void HtmlReport::paragraph(const std::string& text) {
   body_ += "<p>" + escapedXml(text) + "</p>\n";
 }
 
+void HtmlReport::folded(const std::string& title, const std::string& text) {
+  body_ += fmt::format("<details><summary>{}</summary><pre>{}</pre></details>\n", escapedXml(title),
+                       escapedXml(text));
+}
+
 void HtmlReport::facts(const std::vector<std::pair<std::string, std::string>>& facts) {
   body_ += "<table>\n";
   for (const auto& [name, value] : facts) {

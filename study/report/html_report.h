@@ -30,6 +30,8 @@ class HtmlReport {
   /// Begins a section. The table of contents at the top lists it.
   void section(const std::string& title);
   void paragraph(const std::string& text);
+  /// A text in its own lines, which the reader unfolds.
+  void folded(const std::string& title, const std::string& text);
   /// Names and their values: inputs, versions, areas.
   void facts(const std::vector<std::pair<std::string, std::string>>& facts);
   /// Adds a table. Cells with a number are right-aligned.

@@ -16,6 +16,7 @@
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "propagation/registry/model_info.h"
+#include "scenario/file/save_scenario.h"
 
 namespace emscape::study {
 namespace {
@@ -66,6 +67,12 @@ std::vector<std::string> editsOf(const scenario::Scenario& scenario) {
   std::vector<std::string> edits;
   for (const scenario::Edit& edit : scenario.edits()) edits.push_back(scenario::toString(edit));
   return edits;
+}
+
+/// The text with its edits, as a file of its own folder.
+std::string textOf(const scenario::Scenario& scenario) {
+  if (scenario.file.empty()) return "";
+  return scenario::scenarioTextIn(scenario, std::filesystem::absolute(scenario.file).parent_path());
 }
 
 /// Elevation files of all scenarios, each once.
@@ -172,7 +179,8 @@ std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& fold
     json["scenarios"].push_back({{"name", scenario->name},
                                  {"file", scenario->file},
                                  {"hash", scenario->hash},
-                                 {"edits", editsOf(*scenario)}});
+                                 {"edits", editsOf(*scenario)},
+                                 {"text", textOf(*scenario)}});
   }
   json["terrain"] = Json::array();
   for (const std::string& file : terrainFilesOf(study)) {
@@ -290,6 +298,10 @@ void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapR
   facts.emplace_back("heights refer to", "mean sea level by EGM96 (EPSG:5773), or the ground");
   facts.emplace_back("emscape", EMSCAPE_VERSION);
   report.facts(facts);
+  for (const auto& scenario : study.scenarios) {
+    const std::string text = textOf(*scenario);
+    if (!text.empty()) report.folded("The scenario '" + scenario->name + "' with its changes", text);
+  }
 
   addModels(report, *study.scenarios.front());
 

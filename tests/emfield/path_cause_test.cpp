@@ -51,6 +51,11 @@ TEST(PathCause, IsJammingClutterRangeOrSilenceWhereTheyTakeTheDetectionAway) {
   EXPECT_EQ(decisionText(budget), "Jamming by 'jammer' decides.");
   budget.unheard = "beyond the radar's instrumented range of 5.0 km";
   EXPECT_EQ(causeOfDetection(budget), PathCause::range);
+  budget.terms.push_back({"jammer_to_signal_db", "", 30, "dB", ""});
+  EXPECT_NE(causeOfDetection(budget), PathCause::range)
+      << "jammed, it would not be detected without the limit";
+  budget.terms.back().value = -20;
+  EXPECT_EQ(causeOfDetection(budget), PathCause::range) << "the echo burns through";
   budget.terms[0].value = -60;
   budget.jamming.unjammed_probability = 0;
   EXPECT_EQ(causeOfDetection(budget), PathCause::terrain) << "nor would it be detected without the limit";

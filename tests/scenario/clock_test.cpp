@@ -117,6 +117,21 @@ TEST(Clock, TypedTimesAreOfTheClockFirstAndThenInUtc) {
   EXPECT_EQ(parseTime_s("1 d 02:00:00", {"", 0, 1}, {0, 1e6}), 93600) << "as the window writes it";
 }
 
+TEST(Clock, ListOfTimesIsTakenAsItIs) {
+  const Clock clock{"2026-06-01T06:00:00Z", 120, 2};
+  EXPECT_EQ(parseTimes("100,110,130", clock), (std::vector<double>{100, 110, 130}));
+  EXPECT_EQ(parseTimes("0:4,7,2026-06-01T06:00:10Z", clock), (std::vector<double>{0, 2, 4, 7, 10}));
+  for (const char* wrong : {"110,100", "1,1", "0:4,3"}) {
+    EXPECT_THAT(test::errorOf([&] { parseTimes(wrong, clock); }, ErrorCode::usage),
+                testing::HasSubstr("write them in ascending order"))
+        << wrong;
+  }
+  for (const char* wrong : {"1,", ",1", "1,,2", "1,x"})
+    EXPECT_THAT(test::errorOf([&] { parseTimes(wrong, clock); }, ErrorCode::usage),
+                testing::HasSubstr("is not a time"))
+        << wrong;
+}
+
 TEST(Clock, RefusesTextThatIsNoTime) {
   const Clock clock{"", 10, 2};
   for (const char* text : {"", ":", "a", "1:", "1:2:3:4", "2:1", "0:1:0", "0:1:-1", "nan", "0:inf",

@@ -127,6 +127,28 @@ TEST(LikelyMistakes, JammersOfAFewHertzAndWithoutABandwidthAreTold) {
   EXPECT_THAT(with("0"), Not(HasSubstr("narrower than"))) << "so it is written";
 }
 
+TEST(LikelyMistakes, RangesThatTheWaveformRulesOutAreTold) {
+  const auto with = [](const std::string& path, const std::string& value) {
+    return messagesOf("clutter.yaml", {{"emitters.search radar." + path, value}});
+  };
+  EXPECT_THAT(
+      with("waveform.instrumented_range_m", "200000"),
+      AllOf(HasSubstr("looks 200 km far, but its PRF of 1080 Hz has an unambiguous range of 138.8 km"),
+            HasSubstr("a PRF up to 749 Hz is unambiguous to 200 km")));
+  EXPECT_THAT(with("waveform.instrumented_range_m", "138000"), Not(HasSubstr("unambiguous")));
+  EXPECT_THAT(with("waveform", "{prf_hz: 749, pulse_width_s: 1.0e-6, instrumented_range_m: 200000}"),
+              Not(HasSubstr("unambiguous")))
+      << "the remedy";
+  EXPECT_THAT(
+      with("waveform.pulse_width_s", "5.0e-4"),
+      HasSubstr("range cell of radar 'search radar' is 74.95 km long (c pulse width / 2), its receiver of "
+                "1e+06 Hz resolves 149.9 m"));
+  EXPECT_THAT(messagesOf("clutter.yaml", {{"emitters.search radar.waveform.pulse_width_s", "5.0e-4"},
+                                          {"emitters.search radar.clutter.range_cell_m", "150"}}),
+              Not(HasSubstr("range cell")))
+      << "the remedy";
+}
+
 TEST(LikelyMistakes, RegionsAboveAllEmittersOrBelowTheGroundAreTold) {
   const auto with = [](const std::string& height_m) {
     const auto scenario =

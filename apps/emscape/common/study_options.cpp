@@ -52,8 +52,8 @@ void addMapOptions(CLI::App& command, report::MapOptions& options, ViewArguments
   command.add_option("--quantity", options.quantity, "Quantity to map; see docs/scenario-format.md");
   addThresholdOption(command, options.threshold);
   command.add_option("--times", options.times,
-                     "BEGIN:END:STEP, BEGIN:END (in steps of the scenario) or T, in seconds since the "
-                     "scenario's epoch or in UTC");
+                     "BEGIN:END:STEP, BEGIN:END (in steps of the scenario), T or a list of them such as "
+                     "100,110,130, in seconds since the scenario's epoch or in UTC");
   command.add_option("--cell", options.cell_m, "Side of a pixel (m); default: the scenario's voxels")
       ->default_str("");
   command.add_option(
