@@ -1,6 +1,7 @@
 #include "base/memory.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <fstream>
 #include <string>
 
+#include "base/address_limit.h"
 #include "base/control_group.h"
 
 namespace emscape {
@@ -30,16 +32,30 @@ std::optional<std::size_t> systemBytes() {
   return std::nullopt;
 }
 
-/// Remainder of the limit on the address space (ulimit -v).
-std::optional<std::size_t> addressBytes() {
+/// Limit on the address space.
+std::optional<std::size_t> addressLimit() {
   rlimit limit{};
-  const auto pages = numberIn("/proc/self/statm");
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !pages) return std::nullopt;
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+  return limit.rlim_cur;
+}
+
+/// Its remainder.
+std::optional<std::size_t> addressBytes() {
+  const auto limit = addressLimit(), pages = numberIn("/proc/self/statm");
+  if (!limit || !pages) return std::nullopt;
   const std::size_t taken = *pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  return limit.rlim_cur > taken ? limit.rlim_cur - taken : 0;
+  return *limit > taken ? *limit - taken : 0;
 }
 
 }  // namespace
+
+bool hasAddressLimit() {
+  return addressLimit().has_value();
+}
+
+void spareAddresses() {
+  if (hasAddressLimit()) mallopt(M_ARENA_MAX, 1);
+}
 
 std::optional<std::size_t> availableMemory_bytes() {
   std::optional<std::size_t> least;
