@@ -292,6 +292,13 @@ TEST(Limits, ALibraryThatTheMemoryDoesNotHoldIsAnErrorThatNamesTheLimit) {
                      Not(HasSubstr("install"))));
 }
 
+TEST(Limits, AWindowWithinTooLittleMemoryIsAnErrorThatNamesTheLimit) {
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
+  if (!fs::exists(besideThisProgram("emscape-view"))) GTEST_SKIP() << "built without the window";
+  EXPECT_THAT(errorOfRun({"view", quick()}, kOther, "ulimit -v 450000;"),
+              testing::AllOf(HasSubstr("a window"), HasSubstr("ulimit -v")));
+}
+
 // Each thread had address space of its own for malloc(): between 330 and 470 MB libraries ended the program.
 TEST(Limits, SLOW_EachLimitOnMemoryGivesTheResultOrOneMessageThatNamesIt) {
   if (kIsSanitized) GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
