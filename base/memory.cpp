@@ -1,16 +1,14 @@
 #include "base/memory.h"
 
 #include <fmt/format.h>
-#include <malloc.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <string>
 
-#include "base/address_limit.h"
 #include "base/control_group.h"
+#include "base/limits/address_limit.h"
 
 namespace emscape {
 namespace {
@@ -32,30 +30,15 @@ std::optional<std::size_t> systemBytes() {
   return std::nullopt;
 }
 
-/// Limit on the address space.
-std::optional<std::size_t> addressLimit() {
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
-  return limit.rlim_cur;
-}
-
-/// Its remainder.
+/// Remainder of the limit on the address space.
 std::optional<std::size_t> addressBytes() {
-  const auto limit = addressLimit(), pages = numberIn("/proc/self/statm");
+  const auto limit = addressLimit_bytes(), pages = numberIn("/proc/self/statm");
   if (!limit || !pages) return std::nullopt;
   const std::size_t taken = *pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   return *limit > taken ? *limit - taken : 0;
 }
 
 }  // namespace
-
-bool hasAddressLimit() {
-  return addressLimit().has_value();
-}
-
-void spareAddresses() {
-  if (hasAddressLimit()) mallopt(M_ARENA_MAX, 1);
-}
 
 std::optional<std::size_t> availableMemory_bytes() {
   std::optional<std::size_t> least;

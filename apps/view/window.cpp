@@ -20,7 +20,7 @@
 
 #include "apps/view/widgets/glyphs.h"
 #include "apps/view/widgets/theme.h"
-#include "base/address_limit.h"
+#include "base/limits/address_limit.h"
 #include "base/memory.h"
 #include "emscape/base/error.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-#include "base/address_limit.h"
+#include "base/limits/address_limit.h"
 #include "base/text/readable_text.h"
 
 namespace emscape {
