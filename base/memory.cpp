@@ -1,7 +1,6 @@
 #include "base/memory.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <string>
 
 #include "base/control_group.h"
+#include "base/limits/address_limit.h"
 
 namespace emscape {
 namespace {
@@ -30,13 +30,12 @@ std::optional<std::size_t> systemBytes() {
   return std::nullopt;
 }
 
-/// Remainder of the limit on the address space (ulimit -v).
+/// Remainder of the limit on the address space.
 std::optional<std::size_t> addressBytes() {
-  rlimit limit{};
-  const auto pages = numberIn("/proc/self/statm");
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !pages) return std::nullopt;
+  const auto limit = addressLimit_bytes(), pages = numberIn("/proc/self/statm");
+  if (!limit || !pages) return std::nullopt;
   const std::size_t taken = *pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  return limit.rlim_cur > taken ? limit.rlim_cur - taken : 0;
+  return *limit > taken ? *limit - taken : 0;
 }
 
 }  // namespace

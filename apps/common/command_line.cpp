@@ -13,6 +13,7 @@
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
 #include "base/geodesy/gdal_environment.h"
+#include "base/limits/address_limit.h"
 #include "base/text/failure_text.h"
 #include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
@@ -87,8 +88,8 @@ int run(const Action& action, const CLI::App* const& app) {
     return 128 + caughtSignal();
   } catch (const Error& error) {
     return fail(error.code(), error.what() + (app != nullptr ? optionText(*app, error.hint()) : ""));
-  } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::other, "out of memory; fewer voxels, pixels, emitters or times take less");
+  } catch (const std::bad_alloc& error) {
+    return fail(ErrorCode::other, failureText(error) + "; fewer voxels, pixels, emitters or times take less");
   } catch (const std::exception& error) {
     return fail(ErrorCode::other, failureText(error));
   } catch (...) {
@@ -190,6 +191,7 @@ int runCommandLine(const std::vector<std::string>& words, const AddSubcommands& 
 }
 
 int runProgram(const std::vector<std::string>& words, const AddSubcommands& addSubcommands) {
+  spareAddresses();
   gdal::ignoreEnvironment();
   const int status = runCommandLine(words, addSubcommands);
   if (status == 0) return 0;

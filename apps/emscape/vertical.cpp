@@ -68,7 +68,8 @@ study::VerticalRequest requestOf(const VerticalCommand& command, const scenario:
       scenario::namedIndex(scenario.emitters, command.emitter, "--emitter", "emitter", scenario.file);
   if (!command.quantity.empty()) request.quantity = scenario::quantityFromName(command.quantity);
   request.threshold = command.threshold;
-  request.azimuths_deg = command.azimuths_deg;
+  for (const double azimuth_deg : command.azimuths_deg)
+    request.azimuths_deg.push_back(azimuth_deg + 0.0);  // no -0
   request.time_s = scenario::parseTime(command.time, scenario.clock);
   request.smooth_earth = command.blake;
   request.ranges = command.grid.front();
@@ -87,7 +88,22 @@ study::VerticalRequest requestOf(const VerticalCommand& command, const scenario:
   return study::withDefaults(request, scenario, !command.quantity.empty(), "--threshold");
 }
 
+/// Files of AREPS have the azimuth in their names.
+void checkAzimuths(const std::vector<double>& azimuths_deg) {
+  constexpr double kSame_deg = 1e-3;
+  for (std::size_t n = 0; n < azimuths_deg.size(); ++n) {
+    for (std::size_t other = 0; other < n; ++other) {
+      if (std::abs(std::remainder(azimuths_deg[n] - azimuths_deg[other], 360)) < kSame_deg) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("--azimuth: {:g} and {:g} are one direction; give each once",
+                                azimuths_deg[other], azimuths_deg[n]));
+      }
+    }
+  }
+}
+
 int vertical(const VerticalCommand& command, const GlobalOptions& global) {
+  checkAzimuths(command.azimuths_deg);
   if (command.outputs.empty() && command.areps.empty() && command.compare.empty())
     throw Error(ErrorCode::usage, "-o FILE, --areps FOLDER or --compare FILE is required");
   const bool has_areps = !command.areps.empty() || !command.compare.empty();
@@ -122,12 +138,13 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
     losses = compute(strength);
   }
   stopIfInterrupted();
-  if (!command.areps.empty()) makeFolder(command.areps);  // before anything is written
+  std::optional<FolderForFiles> areps;
+  if (!command.areps.empty()) areps.emplace(command.areps);  // before anything is written
   writeStudyOutputs(command.outputs,
                     {[&](const std::string& file) { study::plotVertical(diagram, size, file); },
                      [&](const std::string& file) { report::writeVerticalCsv(diagram, file); },
                      [&] { return dumpJson(report::verticalJson(diagram, true)); }});
-  if (!command.areps.empty()) {
+  if (areps) {
     for (const std::string& file : report::writeAreps(*losses, *scenario, command.areps))
       logInfo("wrote " + file);
   }

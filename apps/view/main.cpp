@@ -10,6 +10,7 @@
 #include "apps/view/files/message_log.h"
 #include "apps/view/files/recordings.h"
 #include "base/geodesy/gdal_environment.h"
+#include "base/limits/address_limit.h"
 #include "base/text/failure_text.h"
 #include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
@@ -75,6 +76,7 @@ void show(ViewOptions options) {
 }  // namespace
 
 int viewMain(int argc, char** argv) {
+  spareAddresses();
   gdal::ignoreEnvironment();
   try {
     if (const std::optional<ViewOptions> options = parseOptions(argc, argv)) show(*options);

@@ -20,6 +20,8 @@
 
 #include "apps/view/widgets/glyphs.h"
 #include "apps/view/widgets/theme.h"
+#include "base/limits/address_limit.h"
+#include "base/memory.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {
@@ -173,6 +175,11 @@ void enlarge(GLFWwindow* window, render::ImageSize size, double scale) {
 }  // namespace
 
 Window::Window(const std::string& title, render::ImageSize size, bool scales, double scale) {
+  // Of Mesa's, which ends the program where less is left.
+  constexpr std::size_t kDriver_bytes = std::size_t{384} << 20;
+  if (hasAddressLimit())
+    requireMemory(
+        {"a window with its driver of OpenGL", kDriver_bytes, "a higher limit is needed (ulimit -v)"}, {});
   last_error.clear();
   glfwSetErrorCallback(keepError);
   if (glfwInit() == GLFW_FALSE) refuse("no window can be opened");

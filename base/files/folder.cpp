@@ -2,6 +2,7 @@
 
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "emscape/base/error.h"
 
@@ -21,6 +22,15 @@ void makeFolder(const fs::path& folder) {
   if (failed == std::errc::not_a_directory || failed == std::errc::file_exists)
     throw Error(ErrorCode::usage, {folder.string()}, "is to be a folder, but it or a part of it is a file");
   if (failed) failMaking(folder, failed.message());
+}
+
+FolderForFiles::FolderForFiles(fs::path folder) : folder_(std::move(folder)), is_new_(!fs::exists(folder_)) {
+  makeFolder(folder_);
+}
+
+FolderForFiles::~FolderForFiles() {
+  std::error_code is_used;
+  if (is_new_) fs::remove(folder_, is_used);
 }
 
 fs::path makeFolderIn(const fs::path& folder, const fs::path& inner) {

@@ -10,6 +10,20 @@ namespace emscape {
 /// @throws Error (other) that names the folder and the cause
 void makeFolder(const std::filesystem::path& folder);
 
+/// A folder that is made if it is missing, and then removed in the end if no file has come into it.
+class FolderForFiles {
+ public:
+  /// @throws Error as makeFolder()
+  explicit FolderForFiles(std::filesystem::path folder);
+  ~FolderForFiles();
+  FolderForFiles(const FolderForFiles&) = delete;
+  FolderForFiles& operator=(const FolderForFiles&) = delete;
+
+ private:
+  std::filesystem::path folder_;
+  bool is_new_;
+};
+
 /// Makes FOLDER/INNER. No component of INNER may be a symbolic link: it would lead the program's files to
 /// where the user did not send them.
 /// @return FOLDER/INNER

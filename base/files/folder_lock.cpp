@@ -91,7 +91,10 @@ bool FolderLock::lock(std::string& holder) {
       std::this_thread::sleep_for(kBetweenAttempts);
       continue;
     }
-    if (!is_new && !isLock(content)) {
+    // An empty file that could be locked is held by nobody: of a program that was killed before it wrote its
+    // name, or of the user. It is used, and left empty.
+    was_empty_ = !is_new && content.empty() && cause == 0;
+    if (!is_new && !isLock(content) && !was_empty_) {
       failWriting(file_,
                   "a file of that name exists that is no lock of emscape; " +
                       std::string(content.empty() ? "it is empty: if a killed process has left it, remove it"
@@ -102,19 +105,20 @@ bool FolderLock::lock(std::string& holder) {
   char host[256] = "?";
   ::gethostname(host, sizeof host - 1);
   const std::string own = kLockWords + "process " + std::to_string(::getpid()) + " on " + host;
-  errno = ENOSPC;  // where a part is written
   // A lock without its words would be taken for a file of the user after this process is killed.
-  if (::ftruncate(descriptor_.number(), 0) != 0 ||
-      ::pwrite(descriptor_.number(), own.data(), own.size(), 0) != static_cast<ssize_t>(own.size())) {
-    const std::string cause = causeOf(errno);
+  try {
+    if (::ftruncate(descriptor_.number(), 0) != 0) failWriting(file_, causeOf(errno));
+    writeBytes(descriptor_, own, file_);
+  } catch (const Error&) {
     remove();
     descriptor_.close();
-    failWriting(file_, cause);
+    throw;
   }
   return true;
 }
 
 void FolderLock::remove() {
+  if (was_empty_ && ::ftruncate(descriptor_.number(), 0) == 0) return;
   ::unlinkat(folder_.number(), file_.filename().c_str(), 0);
 }
 

@@ -14,7 +14,8 @@ namespace emscape {
 class FolderLock {
  public:
   /// Creates FOLDER/NAME, which names the holder of the lock and is removed with it. A file of that name that
-  /// is no lock of this program is neither changed nor removed.
+  /// is no lock of this program is neither changed nor removed; an empty one that nobody has locked is used,
+  /// and left empty.
   /// @throws Error (other) that names the process that holds it, or the cause of another failure
   FolderLock(const std::filesystem::path& folder, const std::string& name);
   /// The same, but null if another process holds the lock.
@@ -31,6 +32,7 @@ class FolderLock {
 
   std::filesystem::path file_;
   Descriptor folder_, descriptor_;
+  bool was_empty_ = false;  ///< the file was there before, empty: it stays
 };
 
 }  // namespace emscape

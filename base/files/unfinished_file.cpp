@@ -146,7 +146,22 @@ class PartsBuffer : public __gnu_cxx::stdio_filebuf<char> {
     return done;
   }
 
+  // A stream that does not know its position says so by -1 alone, which libraries write as a position into
+  // the file.
+  pos_type seekoff(off_type offset, std::ios::seekdir from, std::ios::openmode which) override {
+    return known(stdio_filebuf::seekoff(offset, from, which));
+  }
+  pos_type seekpos(pos_type position, std::ios::openmode which) override {
+    return known(stdio_filebuf::seekpos(position, which));
+  }
+
  private:
+  static pos_type known(pos_type position) {
+    if (position == pos_type(off_type(-1)))
+      throw std::ios_base::failure("a position in the file is not known");
+    return position;
+  }
+
   ByteCheckpoints checkpoints_;
 };
 

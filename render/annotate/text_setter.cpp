@@ -81,7 +81,7 @@ class TextSetter {
 
   /// What Pango and fontconfig, which wait or end the program without it, need for the first text.
   static void requireForFonts() {
-    requireMemory({"the fonts of a picture", kFonts_bytes, "a higher limit is needed (ulimit -v)"}, {});
+    requireMemory({"the text of a picture", kFonts_bytes, "a higher limit is needed (ulimit -v)"}, {});
     requireThreads(kThreadsOfPango);
   }
 

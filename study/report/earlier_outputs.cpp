@@ -32,23 +32,27 @@ bool isMap(const std::string& name) {
 }  // namespace
 
 EarlierOutputs::EarlierOutputs(const fs::path& folder) : folder_(folder) {
-  const fs::path record = folder / "study.json", unfinished = folder / kUnfinished;
-  try {
-    if (isFile(record)) {
-      readJson<Json>(readWholeText(record), record.string(), [&](const Json& json) {
-        for (const Json& output : json.at("outputs")) own_.insert(output.at("file").get<std::string>());
-        outputs_ = json.at("outputs");
-      });
+  // Each by itself: a record that another program has spoiled does not hide the other one.
+  const auto read = [&](const char* name, const auto& take) {
+    const fs::path file = folder / name;
+    try {
+      if (isFile(file)) take(readWholeText(file), file.string());
+    } catch (const Error&) {
+      return;  // is replaced
     }
-    if (isFile(unfinished)) {
-      std::istringstream lines(readWholeText(unfinished));
-      for (std::string name; std::getline(lines, name);) {
-        if (isMap(name)) unfinished_.insert(name);
-      }
+  };
+  read("study.json", [&](const std::string& text, const std::string& file) {
+    readJson<Json>(text, file, [&](const Json& json) {
+      for (const Json& output : json.at("outputs")) own_.insert(output.at("file").get<std::string>());
+      outputs_ = json.at("outputs");
+    });
+  });
+  read(kUnfinished, [&](const std::string& text, const std::string&) {
+    std::istringstream lines(text);
+    for (std::string name; std::getline(lines, name);) {
+      if (isMap(name)) unfinished_.insert(name);
     }
-  } catch (const Error&) {
-    return;  // is replaced
-  }
+  });
 }
 
 EarlierOutputs::~EarlierOutputs() {

@@ -90,6 +90,12 @@ TEST(ForeignFolder, MapsOfEarlierAndOfUnfinishedRunsAreReplaced) {
                "maps/covered_agl100m_t0s.tif\nmaps/covered_agl100m_t0s.tif.aux.xml\nmaps/coverage.nc\n");
   runWell(coverage);
   EXPECT_EQ(folder.files(), files);
+  // Beside a record of the run before that has another form.
+  folder.write("out/maps/.unfinished",
+               "maps/covered_agl100m_t0s.tif\nmaps/covered_agl100m_t0s.tif.aux.xml\nmaps/coverage.nc\n");
+  folder.write("out/study.json", R"({"emscape": "0"})");
+  runWell(coverage);
+  EXPECT_EQ(folder.files(), files);
   folder.write("out/maps/value_agl200m_t0s.tif", "of the run that was killed");
   folder.write("out/maps/.unfinished", "maps/value_agl200m_t0s.tif\n");
   runWell(coverage);

@@ -292,6 +292,30 @@ TEST(Limits, ALibraryThatTheMemoryDoesNotHoldIsAnErrorThatNamesTheLimit) {
                      Not(HasSubstr("install"))));
 }
 
+TEST(Limits, AWindowWithinTooLittleMemoryIsAnErrorThatNamesTheLimit) {
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
+  if (!fs::exists(besideThisProgram("emscape-view"))) GTEST_SKIP() << "built without the window";
+  EXPECT_THAT(errorOfRun({"view", quick()}, kOther, "ulimit -v 450000;"),
+              testing::AllOf(HasSubstr("a window"), HasSubstr("ulimit -v")));
+}
+
+// Each thread had address space of its own for malloc(): between 330 and 470 MB libraries ended the program.
+TEST(Limits, SLOW_EachLimitOnMemoryGivesTheResultOrOneMessageThatNamesIt) {
+  if (kIsSanitized) GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
+  const TemporaryFolder folder;
+  for (const Arguments& command : {Arguments{"simulate", quick(), "--times", "0", "-q", "-o", folder / "s"},
+                                   Arguments{"profile", quick(), "--emitter", "radar", "--to",
+                                             "52.05,5.05,100", "-q", "--plot", folder / "p.png"}}) {
+    for (int limit = 300000; limit < 480000; limit += 20000) {
+      const ProgramResult result = run(command, "ulimit -v " + std::to_string(limit) + ";");
+      fs::remove_all(folder / "s");
+      if (result.status == 0) continue;
+      EXPECT_EQ(result.status, kOther) << command[0] << " within " << limit << " KiB: " << result.err;
+      EXPECT_THAT(result.err, HasSubstr("memory")) << command[0] << " within " << limit << " KiB";
+    }
+  }
+}
+
 TEST_F(Outputs, ThatReplaceAPrivateSeriesArePrivate) {
   const std::string out = folder_ / "s";
   runWell({"simulate", quick_, "-o", out, "--times", "0:1:1", "-q"}, "umask 077;");

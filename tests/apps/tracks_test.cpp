@@ -84,7 +84,14 @@ TEST(Vertical, RefusesInvalidOptions) {
               HasSubstr("--range: '5' must be a number from 100 to 1990000\n"));
   EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", folder / "none/a.png"}, 1),
               HasSubstr("none/a.png"));
-  EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
+  EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", file, "--azimuth", "390"}, 2),
+              HasSubstr("--azimuth"));
+  EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", file, "--azimuth", "-330"}, 2),
+              HasSubstr("--azimuth: 30 and -330 are one direction; give each once"));
+  EXPECT_THAT(
+      errorOf({"--emitter", "search radar", "-o", folder / "none/a.png", "--areps", folder / "areps"}, 1),
+      HasSubstr("none/a.png"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing is left behind, not even a folder";
 }
 
 TEST(Exposure, WritesFilesOfEachKindAndTheSameOnesAgain) {

@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -117,14 +118,27 @@ TEST(FolderLock, OfAKilledProcessIsTakenOver) {
 
 TEST(FolderLock, AFileOfTheUserWithItsNameIsLeftAsItIs) {
   const test::TemporaryFolder folder;
-  for (const std::string text : {"", "of another program"}) {
-    folder.write("a.lock", text);
-    EXPECT_EQ(test::errorOf([&] { FolderLock(folder.path(), "a.lock"); }, ErrorCode::other),
-              folder / "a.lock" + ": cannot write: a file of that name exists that is no lock of emscape; " +
-                  (text.empty() ? "it is empty: if a killed process has left it, remove it"
-                                : "use another folder"));
-    EXPECT_EQ(test::readFile(folder / "a.lock"), text);
+  folder.write("a.lock", "of another program");
+  EXPECT_EQ(test::errorOf([&] { FolderLock(folder.path(), "a.lock"); }, ErrorCode::other),
+            folder / "a.lock" +
+                ": cannot write: a file of that name exists that is no lock of emscape; use another folder");
+  EXPECT_EQ(test::readFile(folder / "a.lock"), "of another program");
+}
+
+/// A process that was killed between creating and writing its lock has left it, or the user.
+TEST(FolderLock, AnEmptyFileThatNobodyHoldsIsUsedAndStaysEmpty) {
+  const test::TemporaryFolder folder;
+  folder.write("a.lock", "");
+  {
+    const FolderLock lock(folder.path(), "a.lock");
+    EXPECT_THAT(test::readFile(folder / "a.lock"), HasSubstr("lock of emscape, process "));
+    EXPECT_EQ(FolderLock::tryLock(folder.path(), "a.lock"), nullptr);
   }
+  EXPECT_EQ(test::readFile(folder / "a.lock"), "");
+  const int holder = open((folder / "a.lock").c_str(), O_RDWR);
+  flock(holder, LOCK_EX);  // as by flock(1)
+  EXPECT_EQ(FolderLock::tryLock(folder.path(), "a.lock"), nullptr);
+  close(holder);
 }
 
 TEST(FolderLock, OneOfManyProcessesGetsIt) {

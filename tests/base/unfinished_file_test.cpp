@@ -8,6 +8,7 @@
 
 #include "base/files/whole_file.h"
 #include "emscape/base/error.h"
+#include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/unfinished_files.h"
@@ -48,6 +49,29 @@ TEST(UnfinishedFile, IsPublishedWithTheFileBesideIt) {
       EXPECT_THAT(folder.files(), ElementsAre("a.tif")) << "the labels of the earlier file";
     }
   }
+}
+
+// Libraries would write -1 into the file.
+TEST(UnfinishedFile, ThatDoesNotKnowItsPositionFails) {
+  const test::TemporaryFolder folder;
+  int pipe[2];
+  ASSERT_EQ(::pipe(pipe), 0);
+  const auto write = [&] {
+    UnfinishedFile file(folder / "a.vdb");
+    file.write([&](std::ostream& out) {
+      EXPECT_EQ((out << "values").tellp(), 6);
+      for (const fs::directory_entry& entry : fs::directory_iterator("/proc/self/fd")) {
+        std::error_code is_closed;
+        if (fs::read_symlink(entry, is_closed) == file.temporary())
+          ::dup2(pipe[1], std::stoi(entry.path().filename()));  // has no position
+      }
+      static_cast<void>(out.tellp());
+    });
+  };
+  EXPECT_THAT(test::errorOf(write, ErrorCode::other), HasSubstr("a.vdb: cannot write: Illegal seek"));
+  EXPECT_THAT(folder.files(), IsEmpty());
+  ::close(pipe[0]);
+  ::close(pipe[1]);
 }
 
 TEST(UnfinishedFile, LeavesNothingWhenDescriptorsRunOut) {

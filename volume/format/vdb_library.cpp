@@ -1,13 +1,10 @@
 // Reading, writing and conversion by OpenVDB, whose library is loaded at the first use.
-#include <fmt/format.h>
-
-#include <future>
 #include <system_error>
-#include <thread>
-#include <vector>
 
 #include "base/loaded_library.h"
 #include "base/memory.h"
+#include "base/text/failure_text.h"
+#include "base/threads.h"
 #include "emscape/base/error.h"
 #include "volume/format/vdb.h"
 #include "volume/format/vdb_functions.h"
@@ -31,26 +28,13 @@ void forwardLog(LogLevel level, const std::string& message) {
 }
 
 /// OpenVDB's library for logging starts threads when it is loaded, and ends the program if it cannot.
-void requireThreads() {
-  constexpr int kThreads = 4;
-  std::promise<void> end;
-  const std::shared_future<void> ended = end.get_future().share();
-  std::vector<std::thread> threads;
-  std::error_code failed;
+void requireThreadsOfOpenVdb() {
   try {
-    for (int n = 0; n < kThreads; ++n) threads.emplace_back([ended] { ended.wait(); });
+    requireThreads(4);
   } catch (const std::system_error& error) {
-    failed = error.code();
+    throw Error(ErrorCode::other, "OpenVDB, which .vdb and .nvdb files need: " + failureText(error) +
+                                      "; the formats vti and raw do without");
   }
-  end.set_value();
-  for (std::thread& thread : threads) thread.join();
-  if (!failed) return;
-  throw Error(ErrorCode::other,
-              fmt::format("OpenVDB, which .vdb and .nvdb files need, starts {} threads, of which {} can be "
-                          "started ({}): a limit on processes or memory is reached (ulimit -u, ulimit -v, or "
-                          "of a container); the "
-                          "formats vti and raw do without",
-                          kThreads, threads.size(), failed.message()));
 }
 
 const VdbFunctions& vdbFunctions() {
@@ -58,7 +42,7 @@ const VdbFunctions& vdbFunctions() {
     requireMemory({"OpenVDB's library for .vdb and .nvdb files", std::size_t{96} << 20,
                    "the formats vti and raw do without"},
                   {});
-    requireThreads();
+    requireThreadsOfOpenVdb();
     const LoadedLibrary library({"emscape_vdb.so"}, "emscape_vdb.so, which .vdb and .nvdb files need",
                                 "it is in ../lib/emscape beside the program's folder and needs the package "
                                 "libopenvdb10.0 (Debian 12)");

@@ -300,6 +300,7 @@ auto withFileNamed(const std::filesystem::path& path, const Body& body) {
     if (!error.location().file.empty()) throw;
     throw Error(error.code(), {path.string()}, error.message());
   } catch (const std::exception& error) {
+    if (isShortage(error)) throw Error(ErrorCode::other, {path.string()}, failureText(error));
     throw Error(ErrorCode::bad_input, {path.string()}, "OpenVDB cannot read it: " + failureText(error));
   }
 }
