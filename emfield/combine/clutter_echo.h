@@ -1,22 +1,38 @@
 /// Clutter in the resolution cell of a voxel while a radar's beam is aimed at it.
 ///
-/// Land and sea: the map at the beam's azimuth and in the range cell about the voxel's slant range, and in
-/// those of the other trips whose echoes arrive with it, each step weighted by the two-way pattern towards
-/// its surface. Rain: the beam's cross section times the range cell, in the part of the two-way power between
-/// mean sea level and the top of the rain. An array's beam widens with the steering, by the direction cosines
-/// of its plane (Mailloux, Phased Array Antenna Handbook, ch. 1).
+/// Land and sea: the map at the beam's azimuth and the voxel's slant range, and at those of the other trips
+/// whose echoes arrive with it, each weighted by the two-way pattern towards its surface. Rain: the beam's
+/// cross section times the range cell, in the part of the two-way power between mean sea level and the top of
+/// the rain. An array's beam widens with the steering, by the direction cosines of its plane (Mailloux,
+/// Phased Array Antenna Handbook, ch. 1).
 #pragma once
 
 #include <cmath>
 
 #include "base/math/fast_math.h"
-#include "emfield/clutter/clutter_beam.h"
 #include "emfield/combine/combine.h"
 #include "emfield/geometry/clutter_map.h"
 #include "emfield/radar/look.h"
 #include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
+
+/// Part of a beam's two-way power that is below an elevation, by the angle from its axis: log2(part / (1 -
+/// part)), which is smooth far into the side lobes, evenly spaced from -reach_rad to reach_rad.
+struct PowerBelow {
+  static constexpr int kNodes = 65;
+  float reach_rad = 1;
+  float log2_odds[kNodes] = {};
+
+  EMSCAPE_HD float at(float from_axis_rad) const {
+    const float node = (from_axis_rad / reach_rad + 1) * (0.5f * (kNodes - 1));
+    const float inside = node > 0 ? node : 0.0f;
+    const float bounded = inside < kNodes - 1 ? inside : kNodes - 1.0f;
+    const int below = static_cast<int>(bounded < kNodes - 2 ? bounded : kNodes - 2.0f);
+    const float odds = log2_odds[below] + (bounded - below) * (log2_odds[below + 1] - log2_odds[below]);
+    return 1 / (1 + fastExp2(-odds));
+  }
+};
 
 /// A radar's clutter in a channel, after its filter, as plain data; all 0: none.
 struct ClutterTask {
@@ -75,46 +91,29 @@ EMSCAPE_HD inline float rainToNoise(const ClutterTask& task, const EmitterBeam& 
          fastExp2(-task.rain_octaves_per_m * range_m) / (range_m * range_m);
 }
 
-/// What the clutter of the surface depends on of a beam on a voxel: the vertical plane through its axis, and
-/// the rows of the map beside it.
-struct SurfaceLook {
-  Vec3f level, up;  ///< in the aimed antenna's frame: the horizon below the axis, and the zenith
-  float steer_u = 0, steer_v = 0;
-  float widening = 1;  ///< of a steered array's beam
-  ClutterNeighbours rows;
-};
-
-/// Without branches, for SIMD.
-/// @param map  ClutterMapView, or a type with the same rows() and stepAt()
-template <class Map>
-EMSCAPE_HD inline SurfaceLook surfaceLook(const Map& map, const EmitterBeam& beam, const Aim& aim) {
-  const Vec3f axis = axisOf(beam, aim);
-  const float scale = 1 / std::sqrt(axis.x * axis.x + axis.y * axis.y + 1e-12f);
-  SurfaceLook look;
-  look.level = turnedBy(aim, inAntennaFrame(beam, {axis.x * scale, axis.y * scale, 0}));
-  look.up = turnedBy(aim, inAntennaFrame(beam, {0, 0, 1}));
-  look.steer_u = aim.steer_u;
-  look.steer_v = aim.steer_v;
-  look.widening = std::sqrt(1 - aim.steer_v * aim.steer_v) / cosineOfSteering(aim);
-  look.rows = map.rows(fastAtan2(axis.x, axis.y));
-  return look;
+/// Clutter of land and sea over noise at a slant range. Without branches, for SIMD.
+/// @param map   ClutterMapView, or a type with the same cellAt()
+template <scenario::PatternKind kind, class Map>
+EMSCAPE_HD inline float surfaceToNoise(const ClutterTask& task, const Map& map, const EmitterBeam& beam,
+                                       const Aim& aim, float range_m) {
+  const Vec3f direction = axisOf(beam, aim);
+  const ClutterCell cell = map.cellAt(fastAtan2(direction.x, direction.y), range_m);
+  const float cosine2 = 1 - cell.sine * cell.sine;
+  const float level2 = direction.x * direction.x + direction.y * direction.y;
+  const float scale = std::sqrt((cosine2 > 0 ? cosine2 : 0.0f) / (level2 + 1e-12f));
+  const Vec3f to_surface = inAntennaFrame(beam, {direction.x * scale, direction.y * scale, cell.sine});
+  const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, to_surface);
+  const float power = amplitude * amplitude;
+  const float widening = std::sqrt(1 - aim.steer_v * aim.steer_v) / cosineOfSteering(aim);
+  return task.surface * widening * cell.echo * power * power;
 }
 
-/// Clutter of land and sea over noise from one of the steps that a range cell touches: the range cell in one
-/// of the trips that arrive with a slant range. Without branches, for SIMD.
-/// @param step  0 .. ClutterSteps::touched() - 1
+/// The same in one of the trips that arrive with a slant range.
 template <scenario::PatternKind kind, class Map>
-EMSCAPE_HD inline float surfaceOfStep(const ClutterTask& task, const Map& map, const EchoTrips& trips,
-                                      const EmitterBeam& beam, const SurfaceLook& look, float range_m,
-                                      int trip, int step) {
+EMSCAPE_HD inline float surfaceOfTrip(const ClutterTask& task, const Map& map, const EchoTrips& trips,
+                                      const EmitterBeam& beam, const Aim& aim, float range_m, int trip) {
   const float there_m = trips.range_m(range_m, trip);
-  const ClutterCell cell = map.stepAt(look.rows, there_m, step);
-  const float sine = cell.echo_sine / (cell.echo > 1e-37f ? cell.echo : 1e-37f);
-  const float cosine2 = 1 - sine * sine;
-  const Vec3f to_surface = look.level * std::sqrt(cosine2 > 0 ? cosine2 : 0.0f) + look.up * sine;
-  const float amplitude = scenario::amplitudeOf<kind>(beam.pattern, to_surface, look.steer_u, look.steer_v);
-  const float power = amplitude * amplitude;
-  const float value = task.surface * look.widening * cell.echo * power * power;
+  const float value = surfaceToNoise<kind>(task, map, beam, aim, there_m);
   return there_m < trips.end_m ? value : 0.0f;
 }
 
@@ -123,12 +122,8 @@ template <scenario::PatternKind kind, class Map>
 EMSCAPE_HD inline float clutterToNoise(const ClutterTask& task, const Map& map, const EchoTrips& trips,
                                        const EmitterBeam& beam, const Aim& aim, float range_m) {
   float sum = task.rain > 0 ? rainToNoise(task, beam, aim, range_m) : 0.0f;
-  if (task.surface == 0) return sum;
-  const SurfaceLook look = surfaceLook(map, beam, aim);
-  for (int trip = 0; trip < trips.count; ++trip) {
-    for (int step = 0; step < map.steps.touched(); ++step)
-      sum += surfaceOfStep<kind>(task, map, trips, beam, look, range_m, trip, step);
-  }
+  for (int trip = 0; task.surface > 0 && trip < trips.count; ++trip)
+    sum += surfaceOfTrip<kind>(task, map, trips, beam, aim, range_m, trip);
   return sum;
 }
 

@@ -14,12 +14,17 @@
 namespace emscape::emfield {
 namespace {
 
-constexpr int kMaxRanges = 2048;
+constexpr int kMinAzimuths = 90, kMaxAzimuths = 1440, kMaxRanges = 2048;
+
+int azimuthsOf(const scenario::Emitter& radar) {
+  return std::clamp(static_cast<int>(std::ceil(720 / radar.antenna->beamwidth_az_deg)), kMinAzimuths,
+                    kMaxAzimuths);
+}
 
 ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emitter& radar,
                         const Station& station, const propagation::PathExtent* extent) {
   const double reach = clutterReach_m(scenario.region, station), cell_m = radar.clutter->range_cell_m;
-  int steps = ClutterSteps::kMax;
+  int steps = ClutterGrid::kMaxSteps;
   while (steps > 1 && cell_m / steps < reach / kMaxRanges) steps -= 2;
   const double step_m = std::max(cell_m / steps, reach / kMaxRanges);
   double farthest_m = reach;
@@ -29,10 +34,10 @@ ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emit
     farthest_m = std::max(farthest_m, std::hypot(extent->farthest_m, highest_m));
   }
   ClutterGrid grid;
-  grid.azimuths = clutterAzimuths(*radar.antenna);
+  grid.azimuths = azimuthsOf(radar);
   grid.ranges = static_cast<int>(std::ceil(farthest_m / step_m)) + 1 + steps / 2;
   grid.step_m = static_cast<float>(step_m);
-  grid.steps = {steps};
+  grid.steps_of_cell = steps;
   grid.part_of_step = steps > 1 ? 1 : static_cast<float>(cell_m / step_m);
   const double repeat_m = radar.waveform ? radar.waveform->unambiguousRange_m() : 0;
   if (repeat_m > 0 && repeat_m < reach) {
@@ -82,7 +87,6 @@ std::optional<ClutterMapTask> clutterMapTask(const scenario::Scenario& scenario,
   task.surface.frequency_ghz = radar.frequency_hz / 1e9;
   task.surface.horizontal_part = horizontalPart(radar.polarization);
   task.grid = clutterGrid(scenario, radar, station, extent);
-  task.power = clutterBeamOf(radar.antenna)->beside;
   task.air_db_per_m = static_cast<float>(airLossAtSea_db_per_m(scenario, radar));
   return task;
 }
@@ -98,12 +102,12 @@ ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar) {
           radar.clutter->sea_state,
           radar.clutter->range_cell_m,
           radar.waveform ? radar.waveform->unambiguousRange_m() : 0,
-          radar.antenna};
+          azimuthsOf(radar)};
 }
 
 std::size_t clutterMapBytes(const scenario::Emitter& radar) {
-  return hasClutterMap(radar) ? static_cast<std::size_t>(clutterAzimuths(*radar.antenna)) *
-                                    (kMaxRanges + 1 + ClutterSteps::kMax / 2) * sizeof(ClutterCell)
+  return hasClutterMap(radar) ? static_cast<std::size_t>(azimuthsOf(radar)) *
+                                    (kMaxRanges + 1 + ClutterGrid::kMaxSteps / 2) * sizeof(ClutterCell)
                               : 0;
 }
 
@@ -114,10 +118,6 @@ std::vector<double> clutterPostRanges(const ClutterGrid& grid, double post_spaci
 void fillClutterMapCpu(const ClutterMapTask& task, ClutterCell* cells) {
   parallelFor(task.grid.azimuths, 1, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) task(i, cells + static_cast<std::size_t>(i) * task.grid.ranges);
-  });
-  constexpr int kTogether = 16;  // cells of some cache lines
-  parallelFor(task.grid.ranges, kTogether, [&](int begin, int end) {
-    for (int range = begin; range < end; ++range) task.weighBeside(range, cells);
   });
 }
 

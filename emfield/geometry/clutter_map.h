@@ -1,12 +1,10 @@
-/// A radar's surface clutter by azimuth and slant range: the land and sea in its sight, weighted by the
-/// azimuth cut of the antenna's pattern, but not by the elevation.
+/// A radar's surface clutter by azimuth and slant range: the land and sea in its sight, without the antenna's
+/// pattern.
 ///
 /// One walk outwards per azimuth: a post is in sight if its elevation is above those of all posts before it,
 /// over an earth of effective radius. The face between it and the post before is then also in sight. The
-/// face's echo is its reflectivity at the grazing angle of the ray on it, times its area. Then each row
-/// becomes the mean over the rows about it, weighted by the beam's two-way power with its axis on the row.
-/// The map depends on the radar's site, its wave, its range cell and the shape of its beam, not on the beam's
-/// direction.
+/// face's echo is its reflectivity at the grazing angle of the ray on it, times its area. The map depends on
+/// the radar's site, its wave and its range cell, not on the direction of its beam.
 ///
 /// Echoes of second and later trips arrive with those of nearer surfaces (EchoTrips): each has the pattern
 /// towards its own surface.
@@ -19,7 +17,6 @@
 
 #include "base/math/device_math.h"
 #include "base/math/fast_math.h"
-#include "emfield/clutter/clutter_beam.h"
 #include "emfield/clutter/reflectivity.h"
 #include "emfield/ground/ground_posts.h"
 #include "emscape/base/host_device.h"
@@ -28,21 +25,13 @@
 
 namespace emscape::emfield {
 
-/// A cell of the map: the sum over the surface of cross section over range^4, per radian of azimuth and in a
-/// step of range, with the two-way loss of the atmosphere (1 / (m2 rad)); and the same sum times the sine of
-/// the elevation of the surface.
+/// A cell of the map: the sum over the surface of cross section over range^4, per radian of azimuth and in
+/// the radar's range cell about the middle of the map's, with the two-way loss of the atmosphere (1 / (m2
+/// rad)); and the sine of the elevation of the surface that echoes; of cells without an echo that of a
+/// neighbour.
 struct ClutterCell {
   float echo = 0;
-  float echo_sine = 0;
-};
-
-/// Steps in a radar's range cell: an odd number up to kMax.
-struct ClutterSteps {
-  static constexpr int kMax = 5;
-  int of_cell = 1;
-
-  /// Steps that a range cell touches, of which the first and the last in part.
-  EMSCAPE_HD int touched() const { return of_cell + 1; }
+  float sine = 0;
 };
 
 /// Slant ranges from which echoes arrive together: they differ by whole unambiguous ranges.
@@ -59,9 +48,11 @@ struct EchoTrips {
 
 /// Positions of the cells: azimuth clockwise from north, 2 pi i / azimuths; slant range (n + 1/2) step.
 struct ClutterGrid {
+  static constexpr int kMaxSteps = 5;
+
   int azimuths = 0, ranges = 0;
   float step_m = 1;
-  ClutterSteps steps;
+  int steps_of_cell = 1;   ///< steps in the radar's range cell, an odd number up to kMaxSteps
   float part_of_step = 1;  ///< range cell over step, if that is longer; else 1
   EchoTrips trips;
 
@@ -83,30 +74,20 @@ EMSCAPE_HD inline ClutterNeighbours rowsBeside(float azimuth_rad, int azimuths, 
   return {first, first + 1 < azimuths ? first + 1 : 0, turned - static_cast<float>(i)};
 }
 
-/// A step that a range cell touches: its cell in the row, and the part of it that is in the range cell.
-struct TouchedStep {
-  int cell = 0;
-  float part = 0;
-};
-
-/// Steps of the range cell about a slant range; below the middle of the first cell, about that; beyond the
-/// middle of the last, about that. Without branches, for SIMD.
-/// @param step  0 .. ClutterSteps::touched() - 1
-EMSCAPE_HD inline TouchedStep touchedStep(ClutterSteps steps, float range_m, int ranges, float cells_per_m,
-                                          int step) {
-  const float place = range_m * cells_per_m - 0.5f, bounded = place > 0 ? place : 0.0f;
-  const int last = ranges - 1, n = static_cast<int>(bounded), middle = n < last ? n : last;
-  const float beyond = n < last ? bounded - static_cast<float>(n) : 0.0f;
-  const int cell = middle - steps.of_cell / 2 + step, inside = cell < 0 ? 0 : cell < last ? cell : last;
-  const float part = step == 0 ? 1 - beyond : step == steps.of_cell ? beyond : 1.0f;
-  return {inside, cell == inside ? part : 0.0f};
+/// The cells on both sides of a range, for interpolation between their middles; below the middle of the first
+/// cell, that cell. Without branches, for SIMD.
+EMSCAPE_HD inline ClutterNeighbours cellsBeside(float range_m, int ranges, float cells_per_m) {
+  const float place = range_m * cells_per_m - 0.5f;
+  const int last = ranges - 1, n = static_cast<int>(place > 0 ? place : 0.0f);
+  const int first = n < last ? n : last, second = n < last ? n + 1 : last;
+  const float beyond = place - static_cast<float>(first), weight = beyond > 0 ? beyond : 0.0f;
+  return {first, second, weight < 1 ? weight : 1.0f};
 }
 
-/// A step's cell between those of two rows.
-EMSCAPE_HD inline ClutterCell stepBetween(const ClutterCell& first, const ClutterCell& second,
-                                          float row_weight, float part) {
-  return {part * (first.echo + row_weight * (second.echo - first.echo)),
-          part * (first.echo_sine + row_weight * (second.echo_sine - first.echo_sine))};
+/// Bilinear: values of two rows (a, b and c, d) at two ranges.
+EMSCAPE_HD inline float mixed(float a, float b, float c, float d, float row_weight, float range_weight) {
+  const float near_row = a + range_weight * (b - a), far_row = c + range_weight * (d - c);
+  return near_row + row_weight * (far_row - near_row);
 }
 
 /// All rows of a map as plain data; no cells: no clutter of the surface.
@@ -114,18 +95,17 @@ struct ClutterMapView {
   const ClutterCell* cells = nullptr;  ///< azimuths x ranges, range fastest
   int azimuths = 0, ranges = 0;
   float cells_per_m = 0, azimuths_per_rad = 0;
-  ClutterSteps steps;
   EchoTrips trips;
 
-  EMSCAPE_HD ClutterNeighbours rows(float azimuth_rad) const {
-    return rowsBeside(azimuth_rad, azimuths, azimuths_per_rad);
-  }
-  /// @param step  0 .. steps.touched() - 1
-  EMSCAPE_HD ClutterCell stepAt(const ClutterNeighbours& rows, float range_m, int step) const {
-    const TouchedStep touched = touchedStep(steps, range_m, ranges, cells_per_m, step);
+  /// Beyond the last range, the value at the last range.
+  EMSCAPE_HD ClutterCell cellAt(float azimuth_rad, float range_m) const {
+    const ClutterNeighbours rows = rowsBeside(azimuth_rad, azimuths, azimuths_per_rad);
+    const ClutterNeighbours columns = cellsBeside(range_m, ranges, cells_per_m);
     // Indices instead of pointers per lane, so that the look-ups become gathers.
-    const int a = rows.first * ranges + touched.cell, b = rows.second * ranges + touched.cell;
-    return stepBetween(cells[a], cells[b], rows.weight, touched.part);
+    const int a = rows.first * ranges + columns.first, b = rows.first * ranges + columns.second;
+    const int c = rows.second * ranges + columns.first, d = rows.second * ranges + columns.second;
+    return {mixed(cells[a].echo, cells[b].echo, cells[c].echo, cells[d].echo, rows.weight, columns.weight),
+            mixed(cells[a].sine, cells[b].sine, cells[c].sine, cells[d].sine, rows.weight, columns.weight)};
   }
 };
 
@@ -135,10 +115,9 @@ struct ClutterMapTask {
   GroundPosts ground;  ///< posts as far as the last cell
   SurfaceEcho surface;
   ClutterGrid grid;
-  PowerBeside power;
   float air_db_per_m = 0;  ///< one way
 
-  /// Fills the cells of one azimuth with what is in sight along it.
+  /// Fills the cells of one azimuth.
   /// @param row  ranges cells
   EMSCAPE_HD void operator()(int azimuth, ClutterCell* row) const {
     for (int n = 0; n < grid.ranges; ++n) row[n] = {};
@@ -168,38 +147,41 @@ struct ClutterMapTask {
       }
       before = here;
     });
-  }
-
-  /// In one range, from the echoes along each azimuth to those of a beam with its axis on it, in place.
-  EMSCAPE_HD void weighBeside(int range, ClutterCell* cells) const {
-    const int beside = power.beside, rows = grid.azimuths;
-    if (beside == 0) return;
-    ClutterCell first[PowerBeside::kMaxBeside], before[PowerBeside::kMaxBeside];  // as they were
-    const auto at = [&](int row) -> ClutterCell& {
-      return cells[static_cast<std::size_t>(row) * grid.ranges + range];
-    };
-    for (int n = 0; n < beside; ++n) {
-      first[n] = at(n);
-      before[n] = at(rows - beside + n);
-    }
-    int oldest = 0;  // of before
-    for (int row = 0; row < rows; ++row) {
-      const ClutterCell here = at(row);
-      ClutterCell sum{power.parts[beside] * here.echo, power.parts[beside] * here.echo_sine};
-      for (int n = 0; n < beside; ++n) {
-        const int i = oldest + n, ahead = row + 1 + n;
-        const ClutterCell& behind = before[i < beside ? i : i - beside];
-        const ClutterCell& next = ahead < rows ? at(ahead) : first[ahead - rows];
-        sum.echo += power.parts[n] * behind.echo + power.parts[beside + 1 + n] * next.echo;
-        sum.echo_sine += power.parts[n] * behind.echo_sine + power.parts[beside + 1 + n] * next.echo_sine;
-      }
-      at(row) = sum;
-      before[oldest] = here;
-      oldest = oldest + 1 < beside ? oldest + 1 : 0;
-    }
+    sumOverRangeCell(row);
+    normalize(row);
   }
 
  private:
+  /// From sums over steps to sums over the range cell about the middle of each step.
+  EMSCAPE_HD void sumOverRangeCell(ClutterCell* row) const {
+    const int beside = grid.steps_of_cell / 2;
+    ClutterCell before[ClutterGrid::kMaxSteps / 2];  // as they were, the nearest first
+    for (int n = 0; n < grid.ranges; ++n) {
+      const ClutterCell here = row[n];
+      for (int i = 0; i < beside; ++i) {
+        const ClutterCell behind = n + 1 + i < grid.ranges ? row[n + 1 + i] : ClutterCell{};
+        row[n].echo += before[i].echo + behind.echo;
+        row[n].sine += before[i].sine + behind.sine;
+      }
+      for (int i = beside - 1; i > 0; --i) before[i] = before[i - 1];
+      before[0] = here;
+    }
+  }
+  /// From sums of depths weighted by the echo to means of sines, seen from the middles of the cells.
+  EMSCAPE_HD void normalize(ClutterCell* row) const {
+    int first = 0;
+    while (first < grid.ranges && !(row[first].echo > 0)) ++first;
+    if (first == grid.ranges) return;
+    const auto sineAt = [&](int n) {
+      return row[n].sine / (row[n].echo * grid.step_m * (static_cast<float>(n) + 0.5f));
+    };
+    float sine = sineAt(first);
+    for (int n = 0; n < grid.ranges; ++n) {
+      if (row[n].echo > 0) sine = sineAt(n);
+      row[n].sine = sine > -1 ? sine : -1.0f;
+    }
+  }
+
   struct Post {
     double range_m = 0, height_msl_m = 0, slant_m = 0;
     SurfaceFace face;
@@ -235,15 +217,15 @@ struct ClutterMapTask {
                           std::pow(10.0, -0.2 * static_cast<double>(air_db_per_m) * range_m) *
                           static_cast<double>(grid.part_of_step);
       row[n].echo += static_cast<float>(echo);
-      row[n].echo_sine -= static_cast<float>(echo * depth_m / range_m);
+      row[n].sine -= static_cast<float>(echo * depth_m);  // becomes a mean sine at the end
     }
   }
 };
 
 EMSCAPE_HD inline ClutterMapView clutterMapView(const ClutterGrid& grid, const ClutterCell* cells) {
   return {
-      cells,      grid.azimuths, grid.ranges, 1 / grid.step_m, static_cast<float>(grid.azimuths / (2 * kPi)),
-      grid.steps, grid.trips};
+      cells,     grid.azimuths, grid.ranges, 1 / grid.step_m, static_cast<float>(grid.azimuths / (2 * kPi)),
+      grid.trips};
 }
 
 /// True for radars with an echo of land or sea.
@@ -256,11 +238,11 @@ struct ClutterMapInputs {
   std::optional<int> sea_state;
   double range_cell_m = 0;
   double unambiguous_range_m = 0;
-  scenario::AntennaPtr antenna;
+  int azimuths = 0;
 };
 ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar);
 
-/// The task of a radar's map without the ground; empty if it has no map. Four rows per beamwidth, 90 to 1440
+/// The task of a radar's map without the ground; empty if it has no map. Two rows per beamwidth, 90 to 1440
 /// in all; five, three or one cell per range cell, at most 2048 as far as the region's farthest point: at
 /// most 24 MB.
 /// @param extent  of paths that may extend beyond the region; null: none. The positions of the cells do not

@@ -19,14 +19,13 @@ PathClutter::PathClutter(const scenario::Snapshot& snapshot, int radar, double r
   const EchoTrips& trips = task_.grid.trips;
   const double farthest_m = trips.count > 1 ? std::max(range_m_, static_cast<double>(trips.end_m)) : range_m_;
   task_.grid.ranges = static_cast<int>(farthest_m / static_cast<double>(task_.grid.step_m)) + 2 +
-                      task_.grid.steps.of_cell / 2;
-  steps = task_.grid.steps;
+                      task_.grid.steps_of_cell / 2;
   post_ranges_m_ = clutterPostRanges(task_.grid, postSpacing_m(terrain));
   task_.ground = groundPosts(terrain, post_ranges_m_);
 }
 
-const std::vector<ClutterCell>& PathClutter::alongAzimuth(int azimuth) const {
-  std::vector<ClutterCell>& cells = along_[azimuth];
+const std::vector<ClutterCell>& PathClutter::row(int azimuth) const {
+  std::vector<ClutterCell>& cells = rows_[azimuth];
   if (cells.empty()) {
     cells.resize(static_cast<std::size_t>(task_.grid.ranges));
     task_(azimuth, cells.data());
@@ -34,28 +33,16 @@ const std::vector<ClutterCell>& PathClutter::alongAzimuth(int azimuth) const {
   return cells;
 }
 
-ClutterCell PathClutter::ofBeam(int row, int cell) const {
-  const PowerBeside& power = task_.power;
-  const int azimuths = task_.grid.azimuths;
-  ClutterCell sum;
-  for (int n = 0; n <= 2 * power.beside; ++n) {
-    const ClutterCell& along =
-        alongAzimuth((row + n - power.beside + azimuths) % azimuths)[static_cast<std::size_t>(cell)];
-    sum.echo += power.parts[n] * along.echo;
-    sum.echo_sine += power.parts[n] * along.echo_sine;
-  }
-  return sum;
-}
-
-ClutterNeighbours PathClutter::rows(float azimuth_rad) const {
-  return clutterMapView(task_.grid, nullptr).rows(azimuth_rad);
-}
-
-ClutterCell PathClutter::stepAt(const ClutterNeighbours& rows, float range_m, int step) const {
+ClutterCell PathClutter::cellAt(float azimuth_rad, float range_m) const {
   const ClutterMapView shape = clutterMapView(task_.grid, nullptr);
-  const TouchedStep touched = touchedStep(steps, range_m, shape.ranges, shape.cells_per_m, step);
-  return stepBetween(ofBeam(rows.first, touched.cell), ofBeam(rows.second, touched.cell), rows.weight,
-                     touched.part);
+  const ClutterNeighbours rows = rowsBeside(azimuth_rad, shape.azimuths, shape.azimuths_per_rad);
+  const ClutterNeighbours columns = cellsBeside(range_m, shape.ranges, shape.cells_per_m);
+  const auto mix = [&](float ClutterCell::*value) {
+    const std::vector<ClutterCell>&near_row = row(rows.first), &far_row = row(rows.second);
+    return mixed(near_row[columns.first].*value, near_row[columns.second].*value,
+                 far_row[columns.first].*value, far_row[columns.second].*value, rows.weight, columns.weight);
+  };
+  return {mix(&ClutterCell::echo), mix(&ClutterCell::sine)};
 }
 
 float PathClutter::toNoise(const ClutterTask& task, const EmitterBeam& beam, const Aim& aim) const {

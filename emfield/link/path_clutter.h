@@ -24,19 +24,16 @@ class PathClutter {
   /// @param beam  with the look's frame and the radar's pattern
   float toNoise(const ClutterTask& task, const EmitterBeam& beam, const Aim& aim) const;
 
-  /// As those of ClutterMapView.
-  ClutterNeighbours rows(float azimuth_rad) const;
-  ClutterCell stepAt(const ClutterNeighbours& rows, float range_m, int step) const;
-  ClutterSteps steps;
+  /// As ClutterMapView::cellAt().
+  ClutterCell cellAt(float azimuth_rad, float range_m) const;
 
  private:
-  const std::vector<ClutterCell>& alongAzimuth(int azimuth) const;
-  ClutterCell ofBeam(int row, int cell) const;
+  const std::vector<ClutterCell>& row(int azimuth) const;
 
   double range_m_;
   ClutterMapTask task_;
   std::vector<double> post_ranges_m_;
-  mutable std::map<int, std::vector<ClutterCell>> along_;
+  mutable std::map<int, std::vector<ClutterCell>> rows_;
 };
 
 }  // namespace emscape::emfield

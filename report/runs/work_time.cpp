@@ -93,7 +93,7 @@ double clutterMap_ns(const Scenario& scenario, const scenario::Terrain* terrain,
   if (!task) return 0;
   const emfield::ClutterGrid& grid = task->grid;
   const auto posts = double(emfield::clutterPostRanges(grid, emfield::postSpacing_m(terrain)).size());
-  const double faces = posts + double(grid.ranges) / grid.steps.of_cell;
+  const double faces = posts + double(grid.ranges) / grid.steps_of_cell;
   return grid.azimuths *
          ((task->surface.has_sea ? kMapSea_ns : kMapFace_ns) * faces + kMapCell_ns * grid.ranges);
 }

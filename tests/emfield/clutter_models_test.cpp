@@ -179,11 +179,7 @@ TEST(SurfaceClutter, OfASteeredArrayIsWiderByTheCosine) {
   // Without elements' patterns echo and clutter fall alike but for the width of the beam.
   const scenario::AntennaPtr array = scenario::makePhasedArray(33, 40, 20, 0.5, 0);
   struct OneCell {
-    ClutterSteps steps;
-    ClutterNeighbours rows(float) const { return {}; }
-    ClutterCell stepAt(const ClutterNeighbours&, float, int step) const {
-      return {step == 0 ? 1.0f : 0.0f, 0};
-    }
+    ClutterCell cellAt(float, float) const { return {1, 0}; }
   };
   ClutterTask task;
   task.surface = 1;
@@ -196,7 +192,7 @@ TEST(SurfaceClutter, OfASteeredArrayIsWiderByTheCosine) {
     Aim aim;
     aim.steer_u = static_cast<float>(std::sin(degToRad(azimuth_deg)));
     const auto found = static_cast<double>(
-        clutterToNoise<scenario::PatternKind::phased_array>(task, OneCell{}, EchoTrips{}, beam, aim, 10e3f));
+        surfaceToNoise<scenario::PatternKind::phased_array>(task, OneCell{}, beam, aim, 10e3f));
     EXPECT_NEAR(ratioToDb(found), -ratioToDb(std::cos(degToRad(azimuth_deg))), 0.01) << azimuth_deg;
   }
 }
