@@ -66,7 +66,7 @@ std::vector<InputEvent> InputQueue::takeFrame(bool is_typing) {
   std::vector<InputEvent> frame;
   std::set<std::pair<Kind, int>> changed;
   std::optional<int> modifiers;
-  bool has_cursor = false, has_button = false, has_press = false, moves_focus = false;
+  bool has_cursor = false, has_button = false, has_press = false, has_text = false, moves_focus = false;
   frames_to_focus_ = std::max(0, frames_to_focus_ - 1);
   while (!events_.empty()) {
     const InputEvent& event = events_.front();
@@ -75,8 +75,10 @@ std::vector<InputEvent> InputQueue::takeFrame(bool is_typing) {
       continue;
     }
     const bool is_press = event.kind == Kind::key && event.action == GLFW_PRESS && !isModifier(event.code);
-    if (is_press && (has_press || has_button || frames_to_focus_ > 0)) break;
+    // A field that Enter or Tab leaves has its text from an earlier frame.
+    if (is_press && (has_press || has_button || has_text || frames_to_focus_ > 0)) break;
     has_press = has_press || is_press;
+    has_text = has_text || event.kind == Kind::text;
     has_cursor = has_cursor || event.kind == Kind::cursor;
     has_button = has_button || event.kind == Kind::button;
     if (has_cursor && has_button) break;
