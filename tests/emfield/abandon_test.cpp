@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <thread>
+#include <vector>
 
 #include "emscape/base/work.h"
 #include "emscape/emfield/solver/field_solver.h"
@@ -90,7 +91,9 @@ TEST(AbandonedField, LeavesASolverThatComputesTheSameFields) {
   const ScenarioPtr edited = withModel("parabolic_equation", "[60, 60, 30]");
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*before);
   const auto valuesOf = [](const FieldSolver& solver) { return solver.volumes().front().host()->values; };
-  for (const double after_ms : {0.0, 20.0}) {
+  const std::vector<double> moments_ms =
+      emscape::test::kIsSanitized ? std::vector{20.0} : std::vector{0.0, 20.0};
+  for (const double after_ms : moments_ms) {
     FieldSolver solver(before, terrain), fresh(before, terrain);
     solver.update(scenario::snapshotAt(before, terrain.get(), 0));
     const auto old_values = valuesOf(solver);

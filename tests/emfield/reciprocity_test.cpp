@@ -14,6 +14,7 @@
 #include "emscape/emfield/link/path_budget.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/reference_data.h"
+#include "tests/support/sanitizers.h"
 
 namespace emscape::emfield {
 namespace {
@@ -75,6 +76,8 @@ class Reciprocity : public ::testing::TestWithParam<PropagationModel> {
 TEST_P(Reciprocity, ExchangedEndsHaveTheSameLoss) {
   const auto file = test::referenceFile("dem/N44W072.tif");
   if (!file) GTEST_SKIP() << test::notInRepository("dem/N44W072.tif");
+  if (emscape::test::kIsSanitized && GetParam() == PropagationModel::parabolic_equation)
+    GTEST_SKIP() << "the sanitizers take minutes for these marches";
   scenario::TerrainSpec spec;
   spec.files = {*file};
   spec.locations = {{*file}};
