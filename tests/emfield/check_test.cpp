@@ -18,6 +18,7 @@
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/reference_data.h"
+#include "tests/support/sanitizers.h"
 #include "tests/support/temporary_folder.h"
 
 namespace emscape::emfield {
@@ -149,6 +150,9 @@ TEST_P(Reference, ResultsWithinTolerance) {
   const ReferenceDataset& dataset = referenceDatasets()[static_cast<std::size_t>(GetParam())];
   const auto path = test::referenceFile("reference/" + dataset.name);
   if (!path) GTEST_SKIP() << test::notInRepository("reference/" + dataset.name);
+  const bool is_march = dataset.name.rfind("pe_", 0) == 0;
+  if (emscape::test::kIsSanitized && is_march)
+    GTEST_SKIP() << "the sanitizers take minutes for these marches";
   const DatasetCheck result = dataset.check(*path);
   EXPECT_GT(result.cases, 0);
   for (const FigureCheck& figure : result.figures) {
