@@ -130,7 +130,7 @@ void saveWithFiles(const Scenario& scenario, const std::string& file) {
     return name;
   });
   const fs::path folder = folderForCopies(to, text_of_name);
-  if (!text_of_name.empty()) makeFolder(folder);
+  if (!text_of_name.empty()) makeFolderIn(to.parent_path(), folder.filename());  // no symbolic link
   for (const auto& [name, text] : text_of_name) {
     if (!fs::exists(folder / name))
       writeWhole(

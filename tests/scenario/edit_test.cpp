@@ -301,6 +301,10 @@ TEST_F(EditScenario, SavingWithFilesCopiesThoseOfItsOwnFolderAndReplacesNone) {
   EXPECT_EQ(test::readFile(folder_.path() / "t_files/track.csv"), "the user's");
   EXPECT_THAT(test::readFile(file), HasSubstr("track: {file: t_files_2/track.csv}"));
   EXPECT_EQ(loadScenario(file)->platforms[2].track.size(), 2u);
+  std::filesystem::create_directories(folder_.path() / "elsewhere");
+  std::filesystem::create_directory_symlink("elsewhere", folder_.path() / "u_files");
+  EXPECT_THROW(saveWithFiles(scenario, (folder_.path() / "u.yaml").string()), Error);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path() / "elsewhere")) << "a link leads nothing away";
 }
 
 TEST_F(EditScenario, AScenarioThatWasMadeByHandHasNoText) {
