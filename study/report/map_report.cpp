@@ -69,9 +69,9 @@ std::vector<std::string> editsOf(const scenario::Scenario& scenario) {
   return edits;
 }
 
-/// The text with its edits, as a file of its own folder.
+/// The text with its edits, as a file of its own folder; empty where it was not read from a file.
 std::string textOf(const scenario::Scenario& scenario) {
-  if (scenario.file.empty()) return "";
+  if (!scenario.source) return "";
   return scenario::scenarioTextIn(scenario, std::filesystem::absolute(scenario.file).parent_path());
 }
 
