@@ -210,7 +210,7 @@ TEST(Inputs, ThatArePipesAreRefused) {
   }
 }
 
-TEST(Results, OfAFieldWithoutAnyValueAreToldWithTheirLikelyCause) {
+TEST(Results, SLOW_OfAFieldWithoutAnyValueAreToldWithTheirLikelyCause) {
   const TemporaryFolder folder;
   const auto warningsOf = [&](const std::string& edit, const Arguments& more) {
     Arguments arguments{"simulate", quick(),      "--times", "0:2:1", "--force",

@@ -65,7 +65,7 @@ class AbandonedField : public testing::TestWithParam<std::string> {};
 /// The bound of docs/viewer.md, on a large field. The best of some tries, because other programs may run.
 TEST_P(AbandonedField, EndsWithinATenthOfASecond) {
   constexpr double kBound_ms = 100;
-  constexpr int kTries = 6;
+  constexpr int kTries = emscape::test::kIsSanitized ? 1 : 6;
   const ScenarioPtr scenario = withModel(GetParam(), "[400, 400, 100]");
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), 0);
@@ -88,7 +88,8 @@ INSTANTIATE_TEST_SUITE_P(Models, AbandonedField, testing::ValuesIn(modelNames())
 
 TEST(AbandonedField, LeavesASolverThatComputesTheSameFields) {
   const ScenarioPtr before = withModel("horizon", "[60, 60, 30]");
-  const ScenarioPtr edited = withModel("parabolic_equation", "[60, 60, 30]");
+  const ScenarioPtr edited =
+      withModel(emscape::test::kIsSanitized ? "diffraction" : "parabolic_equation", "[60, 60, 30]");
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*before);
   const auto valuesOf = [](const FieldSolver& solver) { return solver.volumes().front().host()->values; };
   const std::vector<double> moments_ms =
@@ -114,7 +115,9 @@ TEST(AbandonedField, LeavesNoUnfinishedPowersInTheCaches) {
   const auto valuesOf = [](const FieldSolver& solver) { return solver.volumes().front().host()->values; };
   FieldSolver fresh(scenario, terrain);
   fresh.update(at(9));
-  for (const double after_ms : {0.0, 1.0, 2.0, 4.0, 8.0, 16.0}) {
+  const std::vector<double> moments_ms =
+      emscape::test::kIsSanitized ? std::vector{1.0, 8.0} : std::vector{0.0, 1.0, 2.0, 4.0, 8.0, 16.0};
+  for (const double after_ms : moments_ms) {
     FieldSolver solver(scenario, terrain);
     for (const double time_s : {0.0, 1.0, 2.0}) abandon_ms(solver, at(time_s), after_ms);
     solver.update(at(9));

@@ -195,7 +195,7 @@ std::shared_ptr<scenario::Scenario> jacksboro(propagation::PropagationModel mode
 }
 
 /// The bounds of docs/viewer.md, "Fields of moving emitters".
-TEST(InterpolatedColumns, ErrByTheStatedDecibels) {
+TEST(InterpolatedColumns, SLOW_ErrByTheStatedDecibels) {
   const auto scenario = jacksboro(propagation::PropagationModel::diffraction);
   const auto radars = std::make_shared<scenario::Scenario>(*scenario);
   radars->region.dims = {100, 100, 20};

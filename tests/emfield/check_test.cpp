@@ -150,7 +150,7 @@ TEST_P(Reference, ResultsWithinTolerance) {
   const ReferenceDataset& dataset = referenceDatasets()[static_cast<std::size_t>(GetParam())];
   const auto path = test::referenceFile("reference/" + dataset.name);
   if (!path) GTEST_SKIP() << test::notInRepository("reference/" + dataset.name);
-  const bool is_march = dataset.name.rfind("pe_", 0) == 0;
+  const bool is_march = dataset.name.rfind("pe/", 0) == 0;
   if (emscape::test::kIsSanitized && is_march)
     GTEST_SKIP() << "the sanitizers take minutes for these marches";
   const DatasetCheck result = dataset.check(*path);

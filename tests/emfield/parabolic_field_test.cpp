@@ -16,7 +16,7 @@ using propagation::Polarization;
 using propagation::PropagationModel;
 using namespace testing;
 
-TEST(ParabolicField, PathsAcrossAHoleAreUnknownAndOthersAreNot) {
+TEST(ParabolicField, SLOW_PathsAcrossAHoleAreUnknownAndOthersAreNot) {
   const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 0.6, 0.05);
   const auto scenario = around(3e8, 1200, {36e3, 36e3, 1000}, {24, 24, 4}, 1100);
   EXPECT_THAT(test::errorOf([&] { solve(scenario, terrain); }, ErrorCode::bad_input),
@@ -30,7 +30,7 @@ TEST(ParabolicField, PathsAcrossAHoleAreUnknownAndOthersAreNot) {
   EXPECT_LT(known, 24 * 24);
 }
 
-TEST(ParabolicField, SurfacesNearGroundEqualPaths) {
+TEST(ParabolicField, SLOW_SurfacesNearGroundEqualPaths) {
   const scenario::TerrainPtr terrain = gentleHills();
   const auto scenario = around(3e8, 180, {24e3, 24e3, 400}, {4, 4, 4}, 80);
   const auto made_surface = std::make_shared<Surface>();

@@ -279,7 +279,7 @@ TEST(ParabolicField, MarchEndsAtSteepRidge) {
 
 // In rugged country rays must stay in the band whatever the slopes below them, else the field in sight is
 // lost.
-TEST(ParabolicField, EqualsFreeSpaceHighAboveRuggedGround) {
+TEST(ParabolicField, SLOW_EqualsFreeSpaceHighAboveRuggedGround) {
   const auto terrain =
       std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, [](double east, double north) {
         return 150 + 120 * std::sin(250 * east + 1) * std::cos(200 * north);  // slopes to 24 degrees

@@ -189,7 +189,7 @@ TEST(RadialMarch, ConvergesWithTheSquareOfTheRangeStep) {
 
 // M is read at the heights of the steps: in the steep gradient of an evaporation duct the error is of second
 // order from 0.25 m on, and up to 0.2 dB with steps of 1 m (10 GHz, 14 m, 100 km).
-TEST(RadialMarch, ConvergesWithTheSquareOfTheHeightStep) {
+TEST(RadialMarch, SLOW_ConvergesWithTheSquareOfTheHeightStep) {
   const auto factorsDb = [](int intervals) {
     MarchGrid finer = grid();
     finer.intervals = intervals;

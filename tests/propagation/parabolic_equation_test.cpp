@@ -272,7 +272,7 @@ double overHillDb(double range_step_m, double middle_m, double source_m, double 
   return march.factorDb(0, height_m);
 }
 
-TEST(RadialMarch, OverAHillConvergesAndIsReciprocal) {
+TEST(RadialMarch, SLOW_OverAHillConvergesAndIsReciprocal) {
   EXPECT_NEAR(overHillDb(50, 10e3, 30, 8e3, 20), 8.6, 0.3);  // marched with 10 m by another program
   EXPECT_NEAR(overHillDb(50, 10e3, 30, 10e3, 20), -6.3, 0.3);
   const double behind_db = overHillDb(50, 10e3, 30, 30e3, 20);

@@ -163,7 +163,7 @@ std::shared_ptr<scenario::Scenario> mastInAHollow() {
 }
 
 // The ray was taken at the top of the march above other ground than its own: 120 dB were lost.
-TEST(Vertical, ParabolicEquationFollowsRaysHighAboveLowGround) {
+TEST(Vertical, SLOW_ParabolicEquationFollowsRaysHighAboveLowGround) {
   const std::shared_ptr<scenario::Scenario> scenario = mastInAHollow();
   constexpr int kMast = 2;
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
