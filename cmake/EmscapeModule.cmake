@@ -92,12 +92,13 @@ endfunction()
 # emscape_add_tests(TARGET LABEL [PROPERTY VALUE ...]): a test program takes longer to load than most of its tests to run, so
 # ctest runs it a few times, each time with a part of its tests: TARGET.0 to .3, and TARGET.slow.0 and .1 with the label `slow`
 # for the tests whose name has the prefix SLOW_. The results of the single tests are in test_results of the build folder;
-# scripts/test counts them. EMSCAPE_TESTS_OF_ONE_THREAD: patterns of tests that the thread sanitizer leaves out.
+# scripts/test counts them. EMSCAPE_TESTS_WITHOUT_TSAN: a list of patterns of tests that the thread sanitizer leaves out.
 function(emscape_add_tests target label)
-  set(left_out "*SLOW_*")
-  if(EMSCAPE_SANITIZE STREQUAL "thread" AND EMSCAPE_TESTS_OF_ONE_THREAD)
-    string(APPEND left_out ":${EMSCAPE_TESTS_OF_ONE_THREAD}")
+  set(left_out *SLOW_*)
+  if(EMSCAPE_SANITIZE STREQUAL "thread")
+    list(APPEND left_out ${EMSCAPE_TESTS_WITHOUT_TSAN})
   endif()
+  list(JOIN left_out ":" left_out)
   foreach(part 0 1 2 3 slow.0 slow.1)
     set(name "${target}.${part}")
     if(part MATCHES "slow.(.)")

@@ -72,8 +72,8 @@ scenario::TerrainPtr terrainOf(const Site& site) {
   return scenario::Terrain::load(spec, scenario::Terrain::describe(spec.files[0]).box);
 }
 
-/// Differences of maps from the budgets: of power density (dB) and, but of marches, of the probability of
-/// detection.
+/// Differences of maps from the budgets: of power density (dB) and of the probability of detection, which is
+/// left out where the model marches, because a second map would take minutes.
 struct Differences {
   std::vector<double> power_db, probability;
 
@@ -98,7 +98,7 @@ Differences compare(const Site& site, PropagationModel model, int pixels, std::m
   computeCoverage(scenario, terrain, grid,
                   {kHeights, {Product::value}, scenario::Quantity::power_density_dbwm2, -60, {0}}, {},
                   [&](CoverageMap map) { power.push_back(std::move(map)); });
-  const bool has_probability = propagation::modelInfo(model).radial == nullptr;  // marches take long
+  const bool has_probability = propagation::modelInfo(model).radial == nullptr;
   if (has_probability) {
     computeCoverage(scenario, terrain, grid,
                     {kHeights, {Product::value}, scenario::Quantity::detection_probability, 0.5, {0}}, {},
