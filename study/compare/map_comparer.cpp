@@ -76,9 +76,10 @@ class Pair {
   void differ() {
     map.name += "_difference";
     map.kind = MapKind::difference;
-    map.title = "difference of " + a_.title;
-    map.subject = "difference of " + a_.subject;
-    map.description = "difference of " + a_.description;
+    map.title = a_.title + ", B - A";
+    map.subject = "difference B - A of " + a_.subject;
+    map.description = "difference B - A of " + a_.description;
+    map.floor.reset();
     if (map.unit.rfind("dB", 0) == 0) map.unit = row.unit = "dB";
     double sum = 0;
     forBoth([&](std::size_t p, double area_m2) {

@@ -8,6 +8,8 @@
 namespace emscape::study {
 
 std::string noValueText(const Map& map) {
+  if (map.kind == MapKind::difference) return "NaN: A, B or both have no value";
+  if (!map.floor) return "";
   return fmt::format("NaN: at most {} {}, below the ground, unknown or outside the area", *map.floor,
                      map.unit);
 }
@@ -37,10 +39,9 @@ std::vector<std::pair<std::string, std::string>> metadataOf(const scenario::Scen
       {"EMSCAPE_VERSION", EMSCAPE_VERSION}};
   if (const std::string changes = changesOf(scenario); !changes.empty())
     metadata.emplace_back("EMSCAPE_SCENARIO_CHANGES", changes);
-  if (map.floor) {
-    metadata.emplace_back("EMSCAPE_FLOOR", fmt::format("{}", *map.floor));
-    metadata.emplace_back("EMSCAPE_NO_VALUE", noValueText(map));
-  }
+  if (map.floor) metadata.emplace_back("EMSCAPE_FLOOR", fmt::format("{}", *map.floor));
+  if (const std::string text = noValueText(map); !text.empty())
+    metadata.emplace_back("EMSCAPE_NO_VALUE", text);
   if (map.height) metadata.emplace_back("EMSCAPE_HEIGHT", describe(*map.height));
   if (map.time_s) {
     metadata.emplace_back("EMSCAPE_TIME_S", fmt::format("{}", *map.time_s));

@@ -9,7 +9,7 @@
 
 namespace emscape::study {
 
-/// What pixels without a value are, of a map that has a floor.
+/// What pixels without a value are, of differences and of maps with a floor; empty of others.
 std::string noValueText(const Map& map);
 
 /// Items of every map's file, EMSCAPE_NAME and value.

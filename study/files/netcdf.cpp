@@ -227,10 +227,8 @@ class NetCdf : public MapCollection {
     check(messages, variable != nullptr);
     setText(variable, "long_name", map.subject + (map.unit.empty() ? "" : " (" + map.unit + ")"));
     setText(variable, "coordinates", "lat lon");
-    if (map.floor) {
-      setText(variable, "floor", fmt::format("{}", *map.floor));
-      setText(variable, "no_value", noValueText(map));
-    }
+    if (map.floor) setText(variable, "floor", fmt::format("{}", *map.floor));
+    if (const std::string text = noValueText(map); !text.empty()) setText(variable, "no_value", text);
     if (is_whole) {
       GDALMDArraySetRawNoDataValue(variable.get(), &kNoNumber);
       addFlags(variable, map);

@@ -8,6 +8,7 @@
 
 #include "emscape/scenario/file/scenario_file.h"
 #include "study/compare/changed_areas.h"
+#include "study/files/map_metadata.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 
@@ -75,6 +76,20 @@ TEST(Compare, WithoutJammersGainsTheAreaOfJamLoss) {
   const Compared on(quiet, jammed, {Product::covered});
   EXPECT_EQ(on.comparison.rows[0].lost_m2, covered.gained_m2);
   EXPECT_EQ(on.comparison.rows[0].gained_m2, 0);
+}
+
+TEST(Compare, DifferencesOfLevelsHaveNoFloorOfALevel) {
+  const ComparedScenario a = jacksboro(), b = jacksboro({{"emitters.jammer.power_w", "1"}});
+  CompareRequest request;
+  request.coverage = {{kLow}, {Product::value}, scenario::Quantity::power_density_dbwm2, -60, {kTime_s}};
+  std::vector<Map> maps;
+  computeComparison(a, b, makeMapGrid(areaOf(a.scenario->region), 1000, "utm"), request, {},
+                    [&](const Map& map) { maps.push_back(map); });
+  ASSERT_EQ(maps.size(), 1U);
+  EXPECT_EQ(maps[0].unit, "dB");
+  EXPECT_THAT(maps[0].subject, HasSubstr("difference B - A of "));
+  EXPECT_EQ(maps[0].floor, std::nullopt);
+  EXPECT_EQ(noValueText(maps[0]), "NaN: A, B or both have no value");
 }
 
 TEST(Compare, ExplainsLargestChanges) {
