@@ -344,7 +344,8 @@ void App::handleKeys(const std::vector<InputEvent>& events) {
     log_.write("key", {{"key", toString(chord)}});
     if (chord.key.size() == 1 && chord.key[0] >= '1' && chord.key[0] <= '9') {
       session_->perform({chord.control ? "bookmark" : "recall", {{"number", chord.key[0] - '0'}}});
-    } else if (const Action* action = actionOf(chord)) {
+    } else if (const Action* action = actionOf(chord);
+               action && (event.action != GLFW_REPEAT || repeats(*action))) {
       session_->perform(parseCommand(std::string(action->command)));
     }
   }

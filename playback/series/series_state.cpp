@@ -47,11 +47,11 @@ SeriesState fromJson(const Json& json) {
 
 Json recipeOf(const FieldSeries& series, const SeriesOptions& options) {
   const scenario::Scenario& scenario = *series.input().scenario;
-  Json elevations = Json::array();
+  Json rasters = Json::array();
   if (scenario.terrain) {
-    for (const std::string& file : scenario.terrain->files) {
+    for (const std::string& file : scenario.terrain->rasters()) {
       const FileDigest digest = digestOf(file);
-      elevations.push_back({{"bytes", digest.bytes}, {"crc32", digest.crc32}});
+      rasters.push_back({{"bytes", digest.bytes}, {"crc32", digest.crc32}});
     }
   }
   Json channels = Json::array();
@@ -59,7 +59,7 @@ Json recipeOf(const FieldSeries& series, const SeriesOptions& options) {
   Json recipe{
       {"scenario", scenario.name},
       {"scenario hash", scenario.hash},
-      {"content of elevation files", elevations},
+      {"content of terrain files", rasters},
       {"version of emscape", EMSCAPE_VERSION},
       {"instruction set", instructionSet()},
       {"format", std::set<std::string>(options.formats.begin(), options.formats.end())},

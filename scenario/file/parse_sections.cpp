@@ -322,6 +322,8 @@ ScanSpec parseScan(const Section& section, bool steers_electronically, ParseCont
   scan.elevation_deg = section.number("elevation_deg");
   const auto numberOrZero = [&](const char* key) { return section.optionalNumber(key).value_or(0); };
   scan.rate_rpm = numberOrZero("rate_rpm");
+  // A turn of it would never end: what asks for whole turns has one direction.
+  if (scan.kind == ScanKind::rotate && scan.rate_rpm == 0) scan.kind = ScanKind::fixed;
   scan.width_deg = numberOrZero("width_deg");
   scan.rate_deg_s = numberOrZero("rate_deg_s");
   scan.elevation_step_deg = numberOrZero("elevation_step_deg");

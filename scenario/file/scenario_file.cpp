@@ -320,12 +320,8 @@ std::vector<std::string> filesOf(const Scenario& scenario) {
     for (const auto& [file, digest] : scenario.source->files.digests) files.push_back(file);
   }
   if (scenario.terrain) {
-    const auto add = [&](const std::vector<std::string>& names) {
-      files.insert(files.end(), names.begin(), names.end());
-    };
-    add(scenario.terrain->files);
-    add(scenario.terrain->surface_files);
-    add(scenario.terrain->land_cover.files);
+    const std::vector<std::string> rasters = scenario.terrain->rasters();
+    files.insert(files.end(), rasters.begin(), rasters.end());
     if (!scenario.terrain->land_cover.table.empty()) files.push_back(scenario.terrain->land_cover.table);
   }
   return files;

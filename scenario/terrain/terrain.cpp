@@ -257,6 +257,7 @@ class TerrainMosaic : public Terrain {
   void requireSurface(const TerrainSpec& spec, const GeoBox& box);
   void survey(const std::vector<TerrainSheet>& sheets);
   void surveyPosts(const TerrainSheet& sheet);
+  void surveyVoid(const TerrainSheet& sheet, int column, int row);
   bool covered(const std::vector<TerrainSheet>& sheets, double latitude_deg, double longitude_deg) const;
 
   GeoBox box_;
@@ -265,6 +266,8 @@ class TerrainMosaic : public Terrain {
   double post_spacing_m_ = std::numeric_limits<double>::quiet_NaN();
   long long void_posts_ = 0;
   double uncovered_fraction_ = 1.0;
+  double missing_fraction_ = 1.0;  ///< of the box: not covered, or among void posts
+  double highest_beside_void_m_ = std::numeric_limits<double>::quiet_NaN();
   GeoBox coverage_;
   double lowest_m_ = std::numeric_limits<double>::quiet_NaN();
   double highest_m_ = std::numeric_limits<double>::quiet_NaN();
@@ -343,11 +346,19 @@ void TerrainMosaic::addSea() {
   if (void_posts_ == 0 && uncovered_fraction_ == 0) return;
   lowest_m_ = std::fmin(lowest_m_, 0.0);
   highest_m_ = std::fmax(highest_m_, 0.0);
+  constexpr double kShore_m = 100;  // ground beside voids that are the sea's is lower, but for cliffs
+  std::string hint = uncovered_fraction_ == 1 ? "; " + place_text_ : "";
+  if (highest_beside_void_m_ > kShore_m) {
+    hint += fmt::format(
+        "; beside void posts the ground is up to {:.0f} m high: such voids are not the sea's. Fill them in "
+        "the "
+        "file, as 'gdal_fillnodata.py IN OUT' does, or take 'missing: mask'",
+        highest_beside_void_m_);
+  }
   warnings_.push_back(fmt::format(
-      "terrain: {} void posts and {:.3g} % of the area, which no elevation file covers, are taken as sea (0 "
-      "m), as "
-      "'missing: sea' says{}",
-      void_posts_, 100 * uncovered_fraction_, uncovered_fraction_ == 1 ? "; " + place_text_ : ""));
+      "terrain: {:.3g} % of the area is taken as sea (0 m), as 'missing: sea' says: {:.3g} % that no "
+      "elevation file covers, the others among {} void posts{}",
+      100 * missing_fraction_, 100 * uncovered_fraction_, void_posts_, hint));
 }
 
 void TerrainMosaic::survey(const std::vector<TerrainSheet>& sheets) {
@@ -365,7 +376,7 @@ void TerrainMosaic::survey(const std::vector<TerrainSheet>& sheets) {
                                 std::max(coverage_.east_deg, part.east_deg)};
     surveyPosts(sheet);
   }
-  long long uncovered = 0;
+  long long uncovered = 0, missing = 0;
   for (int j = 0; j < kCoverageProbes; ++j) {
     const double latitude_deg =
         box_.south_deg + (box_.north_deg - box_.south_deg) * j / (kCoverageProbes - 1);
@@ -373,9 +384,11 @@ void TerrainMosaic::survey(const std::vector<TerrainSheet>& sheets) {
       const double longitude_deg =
           box_.west_deg + (box_.east_deg - box_.west_deg) * i / (kCoverageProbes - 1);
       if (!covered(sheets, latitude_deg, longitude_deg)) ++uncovered;
+      if (std::isnan(heightMsl_m(latitude_deg, longitude_deg))) ++missing;
     }
   }
   uncovered_fraction_ = static_cast<double>(uncovered) / (kCoverageProbes * kCoverageProbes);
+  missing_fraction_ = static_cast<double>(missing) / (kCoverageProbes * kCoverageProbes);
 }
 
 void TerrainMosaic::surveyPosts(const TerrainSheet& sheet) {
@@ -394,7 +407,19 @@ void TerrainMosaic::surveyPosts(const TerrainSheet& sheet) {
         highest_m_ = std::fmax(highest_m_, height_m);
       } else if (kind == PostKind::empty && std::isnan(heightMsl_m(latitude_deg, longitude_deg))) {
         ++void_posts_;
+        surveyVoid(sheet, column, row);
       }
+    }
+  }
+}
+
+/// The ground at the posts beside a void one.
+void TerrainMosaic::surveyVoid(const TerrainSheet& sheet, int column, int row) {
+  for (int j = std::max(row - 1, 0); j <= std::min(row + 1, sheet.rows - 1); ++j) {
+    for (int i = std::max(column - 1, 0); i <= std::min(column + 1, sheet.columns - 1); ++i) {
+      if (sheet.kind(i, j) == PostKind::known)
+        highest_beside_void_m_ =
+            std::fmax(highest_beside_void_m_, double{sheet.heights_m[sheet.index(i, j)]});
     }
   }
 }
@@ -414,6 +439,13 @@ bool TerrainMosaic::covered(const std::vector<TerrainSheet>& sheets, double lati
 }
 
 }  // namespace
+
+std::vector<std::string> TerrainSpec::rasters() const {
+  std::vector<std::string> all = files;
+  all.insert(all.end(), surface_files.begin(), surface_files.end());
+  all.insert(all.end(), land_cover.files.begin(), land_cover.files.end());
+  return all;
+}
 
 std::shared_ptr<const Terrain> Terrain::load(const TerrainSpec& spec, const GeoBox& box,
                                              const std::vector<NeededPlace>& places) {

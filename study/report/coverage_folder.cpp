@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "base/files/file_digest.h"
 #include "base/files/file_reading.h"
@@ -33,26 +34,27 @@ void readFrom(const fs::path& file, const Read& read) {
   readJson<Json>(readWholeText(file), file.string(), read, ": not a report of emscape coverage");
 }
 
-/// The scenario of a folder, if it and its elevation files still have their content; else a scenario with
+/// The scenario of a folder, if it and its terrain files still have their content; else a scenario with
 /// only its name.
 void findInputs(const Json& record, CoverageFolder& folder) {
   auto known = std::make_shared<scenario::Scenario>();
   const Json& of = record.at("scenarios").at(0);
   known->name = of.at("name");
-  known->file = of.at("file");
+  known->file = of.at("file");  // as it was given
+  if (const std::string path = of.value("path", ""); fs::exists(path)) known->file = path;
   known->hash = of.at("hash");
   folder.scenario = known;
   std::vector<scenario::Edit> edits;
   for (const std::string text : of.at("edits")) edits.push_back(scenario::parseEdit(text));
-  std::map<std::string, std::string> digests;
-  for (const Json& file : record.at("terrain")) digests[file.at("file")] = file.at("crc32");
+  std::set<std::pair<std::string, std::string>> digests;
+  for (const Json& file : record.at("terrain")) digests.emplace(file.at("file"), file.at("crc32"));
   try {
     const auto scenario = scenario::loadScenario(known->file, edits, scenario::ReadFor::chosen_times);
     if (scenario->hash != known->hash) return;
     if (scenario->terrain) {
-      for (const std::string& file : scenario->terrain->files) {
-        const auto digest = digests.find(fs::path(file).filename().string());
-        if (digest == digests.end() || digest->second != fmt::format("{:08x}", digestOf(file).crc32)) return;
+      for (const std::string& file : scenario->terrain->rasters()) {
+        const std::string crc32 = fmt::format("{:08x}", digestOf(file).crc32);
+        if (digests.count({fs::path(file).filename().string(), crc32}) == 0) return;
       }
     }
     MapArea area;

@@ -75,11 +75,12 @@ std::string textOf(const scenario::Scenario& scenario) {
   return scenario::scenarioTextIn(scenario, std::filesystem::absolute(scenario.file).parent_path());
 }
 
-/// Elevation files of all scenarios, each once.
+/// Elevation and land-cover files of all scenarios, each once.
 std::set<std::string> terrainFilesOf(const MapStudy& study) {
   std::set<std::string> files;
   for (const auto& scenario : study.scenarios) {
-    if (scenario->terrain) files.insert(scenario->terrain->files.begin(), scenario->terrain->files.end());
+    if (!scenario->terrain) continue;
+    for (std::string& file : scenario->terrain->rasters()) files.insert(std::move(file));
   }
   return files;
 }
@@ -178,6 +179,7 @@ std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& fold
   for (const auto& scenario : study.scenarios) {
     json["scenarios"].push_back({{"name", scenario->name},
                                  {"file", scenario->file},
+                                 {"path", std::filesystem::absolute(scenario->file).lexically_normal()},
                                  {"hash", scenario->hash},
                                  {"edits", editsOf(*scenario)},
                                  {"text", textOf(*scenario)}});

@@ -365,7 +365,7 @@ TEST_F(SeriesWriter, AnotherElevationFileOfTheSameSizeIsNotTheSameSeries) {
                 FieldSeries changed = series(1, over_ground);
                 writeSeries(changed, into("s", {"raw"}, Existing::resume));
               }),
-              HasSubstr("another content of elevation files"));
+              HasSubstr("another content of terrain files"));
 }
 
 TEST_F(SeriesWriter, ChannelsWhoseNamesCollideInFileNamesGetFilesOfTheirOwn) {

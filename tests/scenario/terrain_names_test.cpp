@@ -462,7 +462,13 @@ TEST_F(TerrainNames, MissingGroundIsSeaIfTheSpecSaysSo) {
   EXPECT_EQ(sea->heightMsl_m(49.5, 10.9), 0) << "a void";
   EXPECT_EQ(sea->heightMsl_m(49.5, 9.6), 0) << "no file";
   EXPECT_EQ(sea->lowest_m(), 0);
-  EXPECT_THAT(sea->warnings(), ElementsAre(HasSubstr("121 posts a side"), HasSubstr("void posts and 33.")));
+  EXPECT_THAT(sea->warnings(), ElementsAre(HasSubstr("121 posts a side"),
+                                           AllOf(HasSubstr("terrain: 67.3 % of the area is taken as sea"),
+                                                 HasSubstr("33.5 % that no elevation file covers"),
+                                                 Not(HasSubstr("beside void posts")))));
+  test::writeHgt(folder_ / "N49E010.hgt", 121, [](int column, int) { return column < 60 ? 950 : -32768; });
+  EXPECT_THAT(Terrain::load(spec, box)->warnings().back(),
+              HasSubstr("beside void posts the ground is up to 950 m high"));
 }
 
 TEST_F(TerrainNames, AnotherSignOfOneNeededPlaceIsOffered) {

@@ -14,6 +14,7 @@
 #include "study/sweep/results/study_folder.h"
 #include "study/sweep/results/study_report.h"
 #include "study/sweep/study_runner.h"
+#include "tests/scenario/dem_file.h"
 #include "tests/study/converted_vectors.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
@@ -99,6 +100,35 @@ samples:
   EXPECT_EQ(variants.value(13, 1), "1.2");
   EXPECT_EQ(variants.value(4, 2), "100");
   EXPECT_EQ(variants.edits(0).size(), 3u);
+}
+
+TEST(Study, AnotherLandCoverOrSurfaceModelIsAnotherStudy) {
+  const test::TemporaryFolder folder;
+  const auto write = [&](const char* name, double value) {
+    test::geographicDem(4.75, 52.25, 0.002, 250, 250, [&](double, double) {
+      return value;
+    }).write(folder / name);
+  };
+  const auto writeCover = [&](double code) {
+    write("codes.tif", code);
+    test::wholeNumbers(folder / "codes.tif", folder / "cover.tif");
+  };
+  write("dem.tif", 20);
+  write("surface.tif", 25);
+  writeCover(10);
+  std::string text = test::readFile(test::shippedScenario("quick.yaml"));
+  text.replace(text.find("platforms:"), 0,
+               "terrain: {files: [dem.tif], surface_files: [surface.tif], land_cover: {files: [cover.tif], "
+               "classes: worldcover}}\n");
+  const std::string scenario = folder.write("quick.yaml", text);
+  const auto hash = [&] { return Study("variants: [{name: as it is}]\n", kMeasures, scenario).spec().hash; };
+  const std::string first = hash();
+  EXPECT_EQ(hash(), first);
+  writeCover(80);
+  const std::string second = hash();
+  EXPECT_NE(second, first);
+  write("surface.tif", 26);
+  EXPECT_NE(hash(), second);
 }
 
 TEST(Study, SolverNamesStagesThatAParameterInvalidates) {

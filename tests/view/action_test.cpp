@@ -40,6 +40,13 @@ TEST(Action, EveryKeyCanBePressedAndFindsItsAction) {
   }
 }
 
+TEST(Action, AKeyThatIsHeldRepeatsStepsAndNoSwitches) {
+  for (const char* key : {"Right", "Ctrl+Z", "Y", "+", "Shift+Up", "Up"})
+    EXPECT_TRUE(repeats(*actionOf(parseChord(key)))) << key;
+  for (const char* key : {"Space", "C", "T", "Ctrl+S", "F12", "Shift+J", "H"})
+    EXPECT_FALSE(repeats(*actionOf(parseChord(key)))) << key;
+}
+
 TEST(Action, KeysWithoutAnActionHaveNone) {
   EXPECT_EQ(actionOf(parseChord("Ctrl+Shift+X")), nullptr);
 }

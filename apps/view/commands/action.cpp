@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "emscape/base/error.h"
@@ -222,6 +223,12 @@ std::vector<KeyChord> chordsOf(const Action& action) {
   std::istringstream words(action.keys);
   for (std::string word; words >> word;) chords.push_back(parseChord(word));
   return chords;
+}
+
+bool repeats(const Action& action) {
+  static const std::set<std::string> kVerbs{"step",  "rate", "orbit", "dolly", "opacity",
+                                            "scale", "undo", "redo",  "select"};
+  return kVerbs.count(parseCommand(action.command).verb) != 0;
 }
 
 const Action* actionOf(const KeyChord& chord) {

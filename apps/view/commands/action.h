@@ -18,6 +18,9 @@ struct Action {
   const char* section = "";  ///< in View the submenu, elsewhere separators divide the sections
 };
 
+/// Whether a key that is held performs the action again: steps and turns, but no switches.
+bool repeats(const Action& action);
+
 const std::vector<Action>& actions();
 std::vector<std::string> menuNames();
 

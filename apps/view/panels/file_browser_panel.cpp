@@ -196,7 +196,8 @@ void drawTypedPath(PanelContext& context, TypedPath& typed) {
   const bool has_focus = ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
   if (has_focus && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-90 * context.scale);
-  ImGui::InputTextWithHint("##path", "type a path, from the folder above on", typed.data(), typed.size());
+  ImGui::InputTextWithHint("##path", "type a path, from the folder above on", typed.data(), typed.size(),
+                           ImGuiInputTextFlags_AutoSelectAll);
   ImGui::SameLine();
   const char* const button = textOf(context.session.files().browser.purpose()).button;
   if (ImGui::Button(button, {-1, 0}) || (has_focus && isEnterPressed())) openChosen(context.session, typed);

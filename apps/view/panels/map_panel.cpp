@@ -23,8 +23,9 @@ bool textAndButton(PanelContext& context, const char* id, const char* hint, Type
                    const char* button, std::optional<FileBrowser::Purpose> browses = std::nullopt) {
   ImGui::PushID(id);
   ImGui::SetNextItemWidth(kFieldWidth * context.scale);
-  const bool entered = ImGui::InputTextWithHint("##text", hint, typed.data(), typed.size(),
-                                                ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool entered =
+      ImGui::InputTextWithHint("##text", hint, typed.data(), typed.size(),
+                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   ImGui::SameLine();
   const bool pressed = ImGui::Button(button, {64 * context.scale, 0});
   if (browses) {

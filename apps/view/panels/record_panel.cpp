@@ -100,7 +100,7 @@ void drawOutput(PanelContext& context, Typed& typed) {
     typed.setFile(std::exchange(session.files().record_output, ""));
   }
   ImGui::SetNextItemWidth(360 * context.scale);
-  ImGui::InputText("##file", typed.file, sizeof typed.file);
+  ImGui::InputText("##file", typed.file, sizeof typed.file, ImGuiInputTextFlags_AutoSelectAll);
   ImGui::SameLine();
   if (ImGui::Button("Browse")) {
     session.browse(FileBrowser::Purpose::record, std::filesystem::path(typed.file).filename().string());

@@ -37,8 +37,9 @@ namespace {
 void drawExamples(PanelContext& context) {
   Session& session = context.session;
   ImGui::TextColored(accentColor(session.theme()), "Examples");
-  static float wanted = 0;  // height of the table in the frame before
-  ImGui::BeginChild("examples", {0, std::clamp(wanted, 1.0F, 0.4F * ImGui::GetIO().DisplaySize.y)});
+  const float most = 0.4F * ImGui::GetIO().DisplaySize.y;
+  static float wanted = most;  // height of the table in the frame before
+  ImGui::BeginChild("examples", {0, std::clamp(wanted, 1.0F, most)});
   if (ImGui::BeginTable("examples", 2)) {
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed);
     ImGui::TableSetupColumn("text", ImGuiTableColumnFlags_WidthStretch);

@@ -120,7 +120,8 @@ StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& 
   hash.add(spec.base->hash);
   std::vector<std::string> files = spec.files;
   if (spec.base->terrain) {
-    files.insert(files.end(), spec.base->terrain->files.begin(), spec.base->terrain->files.end());
+    const std::vector<std::string> rasters = spec.base->terrain->rasters();
+    files.insert(files.end(), rasters.begin(), rasters.end());
   }
   for (const std::string& name : files) hash.add(fmt::format("{:08x}", digestOf(name).crc32));
   spec.hash = hash.hex();

@@ -79,7 +79,7 @@ class ReportWriter {
     for (const scenario::Edit& edit : study_.base->edits())
       inputs.emplace_back("Changed by --set", scenario::toString(edit));
     if (study_.base->terrain) {
-      for (const std::string& file : study_.base->terrain->files)
+      for (const std::string& file : study_.base->terrain->rasters())
         inputs.emplace_back("Terrain",
                             fmt::format("{}, CRC-32 {:08x}", std::filesystem::path(file).filename().string(),
                                         digestOf(file).crc32));

@@ -98,6 +98,9 @@ struct TerrainSpec {
   std::vector<SourceLocation> surface_locations = {};
   std::vector<TerrainFileKeys> surface_keys = {};
   LandCoverSpec land_cover = {};
+
+  /// All files whose pixels a field depends on: of the ground, of its surface and of the land cover.
+  std::vector<std::string> rasters() const;
 };
 
 /// Remedies for an error of missing terrain.
