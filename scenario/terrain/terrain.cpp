@@ -355,10 +355,13 @@ void TerrainMosaic::addSea() {
         "file, as 'gdal_fillnodata.py IN OUT' does, or take 'missing: mask'",
         highest_beside_void_m_);
   }
-  warnings_.push_back(fmt::format(
-      "terrain: {:.3g} % of the area is taken as sea (0 m), as 'missing: sea' says: {:.3g} % that no "
-      "elevation file covers, the others among {} void posts{}",
-      100 * missing_fraction_, 100 * uncovered_fraction_, void_posts_, hint));
+  const std::string which =
+      void_posts_ == 0 ? "no elevation file covers it"
+                       : fmt::format("{:.3g} % that no elevation file covers, the others among {} void posts",
+                                     100 * uncovered_fraction_, void_posts_);
+  warnings_.push_back(
+      fmt::format("terrain: {:.3g} % of the area is taken as sea (0 m), as 'missing: sea' says: {}{}",
+                  100 * missing_fraction_, which, hint));
 }
 
 void TerrainMosaic::survey(const std::vector<TerrainSheet>& sheets) {
