@@ -205,6 +205,7 @@ void App::handleRequests() {
   files_->is_typing = ImGui::GetIO().WantTextInput;
   if (!opener_.update(session_)) return;
   has_opened_ = true;
+  files_->browser.forgetFolder();
   shown_picture_ = 0;
   window_fits_ = 0;
   frames_left_ = kFramesAfterEvent;

@@ -388,6 +388,13 @@ TEST_F(ScenarioYaml, TapersArraysAndApertures) {
             "'taper_side_lobe_db' is the design level of taper: taylor; 'taper' is uniform");
 }
 
+TEST_F(ScenarioYaml, ARotationThatStandsStillIsAFixedBeam) {
+  const std::string text = replaced(valid_, "rate_rpm: 11.95", "rate_rpm: 0, azimuth_deg: 20");
+  const ScanSpec& scan = load(text)->emitters[0].scan;
+  EXPECT_EQ(scan.kind, ScanKind::fixed);
+  EXPECT_EQ(scan.azimuth_deg, 20);
+}
+
 TEST_F(ScenarioYaml, TrackIsAScanOfRadars) {
   const std::string radar =
       replaced(valid_, "{kind: rotate, rate_rpm: 11.95}", "{kind: track, azimuth_deg: 20}");

@@ -141,6 +141,20 @@ TEST(FileBrowser, EntersFoldersAndComesBackToWhereItWas) {
   EXPECT_EQ(browser.selected(), 0);
 }
 
+TEST(FileBrowser, BeginsInTheFolderOfAnInputThatWasOpenedMeanwhile) {
+  const StateFolder folder;
+  fs::create_directory(folder / "a");
+  fs::create_directory(folder / "b");
+  FileBrowser browser;
+  browser.open(FileBrowser::Purpose::input, folder / "a");
+  browser.open(FileBrowser::Purpose::save_scenario, folder / "b", "s.edited.yaml");
+  EXPECT_EQ(browser.folder(), fs::canonical(folder / "a"));
+  browser.forgetFolder();
+  EXPECT_EQ(browser.folder(), fs::canonical(folder / "a")) << "a dialog that is open stays";
+  browser.open(FileBrowser::Purpose::save_scenario, folder / "b", "s.edited.yaml");
+  EXPECT_EQ(browser.folder(), fs::canonical(folder / "b"));
+}
+
 TEST(FileBrowser, ReportsUnreadableFolder) {
   FileBrowser browser;
   browser.open(FileBrowser::Purpose::input, "/no/such/folder");

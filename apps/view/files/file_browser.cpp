@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <initializer_list>
+#include <utility>
 
 #include "base/text/failure_text.h"
 #include "emscape/base/error.h"
@@ -104,6 +105,7 @@ std::vector<FolderEntry> listFolder(const fs::path& folder) {
 void FileBrowser::open(Purpose purpose, const fs::path& first_folder, const std::string& proposed) {
   purpose_ = purpose;
   proposed_ = proposed;
+  if (std::exchange(begins_anew_, false)) folder_.clear();
   if (folder_.empty()) folder_ = first_folder.empty() ? fs::path(".") : first_folder;
   std::error_code ignored;
   const fs::path absolute = fs::weakly_canonical(fs::absolute(folder_, ignored), ignored);

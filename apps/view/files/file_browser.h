@@ -41,10 +41,12 @@ class FileBrowser {
   /// What a file is chosen for. With the last three it may be new.
   enum class Purpose { input, view, scenario, colors, drape, places, save_scenario, save_colors, record };
 
-  /// Rereads the last visited folder, at first the given one.
+  /// Rereads the last visited folder; at first, and after forgetFolder(), the given one.
   /// @param proposed  the typed path at first; may be empty
   void open(Purpose purpose, const std::filesystem::path& first_folder, const std::string& proposed = "");
   const std::string& proposed() const { return proposed_; }
+  /// The next dialog begins in the folder of the input, not in the one before.
+  void forgetFolder() { begins_anew_ = true; }
   /// True if a typed name may be that of a new file.
   bool savesFile() const { return purpose_ >= Purpose::save_scenario; }
   Purpose purpose() const { return purpose_; }
@@ -80,6 +82,7 @@ class FileBrowser {
   Purpose purpose_ = Purpose::input;
   std::string proposed_;
   std::filesystem::path folder_;
+  bool begins_anew_ = false;
   std::string left_;  // name of the folder that goUp() left, to be selected
   std::vector<FolderEntry> entries_;
   std::string error_;
