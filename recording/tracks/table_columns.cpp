@@ -97,20 +97,25 @@ const std::vector<ColumnNames>& columnNames() {
   return names;
 }
 
+/// Words for a height; of several columns that of the first word is taken. A word stands before those that
+/// are a part of it.
+constexpr std::array<std::string_view, 7> kHeightWords{"altitude",  "alt",  "height", "hgt",
+                                                       "elevation", "elev", "ele"};
+
 /// What a name says of a height: a word for it, and one for its reference at most. Another word (above
 /// ground, of the geoid, of a cloud) makes it the height of something else.
 struct HeightName {
   Column column;
   bool has_reference;
+  std::ptrdiff_t word;  ///< index in kHeightWords, or beyond
 };
 std::optional<HeightName> heightNameOf(std::string name) {
-  if (name == "hae" || name == "geoaltitude") return HeightName{Column::height_ellipsoid, true};
-  constexpr std::array<std::string_view, 7> kHeights{"altitude", "height", "elevation", "elev",
-                                                     "alt",      "hgt",    "ele"};
-  const auto word = std::find_if(kHeights.begin(), kHeights.end(), [&](std::string_view of_height) {
+  if (name == "hae" || name == "geoaltitude")
+    return HeightName{Column::height_ellipsoid, true, kHeightWords.size()};
+  const auto word = std::find_if(kHeightWords.begin(), kHeightWords.end(), [&](std::string_view of_height) {
     return name.find(of_height) != std::string::npos;
   });
-  if (word == kHeights.end()) return std::nullopt;
+  if (word == kHeightWords.end()) return std::nullopt;
   name.erase(name.find(*word), word->size());
   static const std::map<std::string, Column> references{{"", Column::height_msl},
                                                         {"msl", Column::height_msl},
@@ -127,7 +132,9 @@ std::optional<HeightName> heightNameOf(std::string name) {
                                                         {"barometric", Column::height_pressure},
                                                         {"pressure", Column::height_pressure}};
   const auto found = references.find(name);
-  return found == references.end() ? std::nullopt : std::optional(HeightName{found->second, !name.empty()});
+  return found == references.end()
+             ? std::nullopt
+             : std::optional(HeightName{found->second, !name.empty(), word - kHeightWords.begin()});
 }
 
 bool isHeight(Column column) {
@@ -183,6 +190,7 @@ std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
     unit = std::string(trimmed(std::string_view(name).substr(at + 1, name.find_first_of(")]", at) - at - 1)));
     name.resize(at);
   }
+  const bool is_of_dji = name.rfind("osd.", 0) == 0;
   name.erase(0, name.rfind('.') + 1);
   const std::string word = unitTakenFrom(name);
   if (!word.empty()) unit = word;
@@ -190,6 +198,7 @@ std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
       std::remove_if(name.begin(), name.end(), [](char c) { return c == ' ' || c == '_' || c == '#'; }),
       name.end());
   if (name == "timeus" && unit.empty()) return {"time", "us"};  // of ArduPilot
+  if (name == "height" && is_of_dji) name = "heightabovetakeoff";
   return {name, unit};
 }
 
@@ -262,15 +271,17 @@ Columns columnsByName(const std::vector<std::string>& header) {
   for (const Column column : {Column::time, Column::date}) {
     if (columns.count(Column::utc_offset) == 0 && is_local(column)) columns.erase(column);
   }
-  // Of several heights of a kind one that names its reference comes first.
-  for (const bool has_reference : {true, false}) {
-    for (std::size_t i = 0; i < told.size(); ++i) {
-      const auto height = heightNameOf(told[i].first);
-      const auto factor = factorOfUnit(told[i].second);
-      if (height && factor && height->has_reference == has_reference)
-        columns.try_emplace(height->column, TableColumn{i, *factor, !told[i].second.empty()});
-    }
+  std::vector<std::pair<HeightName, TableColumn>> heights;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const auto height = heightNameOf(told[i].first);
+    const auto factor = factorOfUnit(told[i].second);
+    if (height && factor) heights.emplace_back(*height, TableColumn{i, *factor, !told[i].second.empty()});
   }
+  // Of several heights of a kind one that names its reference comes first.
+  std::stable_sort(heights.begin(), heights.end(), [](const auto& a, const auto& b) {
+    return std::pair(!a.first.has_reference, a.first.word) < std::pair(!b.first.has_reference, b.first.word);
+  });
+  for (const auto& [height, column] : heights) columns.try_emplace(height.column, column);
   return columns;
 }
 

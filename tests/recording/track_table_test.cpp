@@ -80,9 +80,23 @@ TEST(TrackTable, HeightsAreKnownByTheWordsOfTheirNames) {
   EXPECT_NEAR(heightOf_m("Altitude (ft MSL)"), 304.8, 1e-9);
   for (const char* name : {"alt_wgs84_m", "ellipsoid_height_m", "hae_m"})
     EXPECT_NEAR(heightOf_m(name), 1000 - geoidUndulation_m(52, 5), 1e-9) << name;
-  for (const char* name :
-       {"altitude_agl_m", "geoid_height_m", "height_above_takeoff(feet)", "relative_altitude_m"})
+  for (const char* name : {"altitude_agl_m", "geoid_height_m", "height_above_takeoff(feet)",
+                           "relative_altitude_m", "OSD.height [ft]"})
     EXPECT_EQ(heightOf_m(name), 0) << name;
+}
+
+TEST(TrackTable, OfSeveralHeightsTheFirstNameOfTheListIsTakenWhereverItStands) {
+  const auto heightOf_m = [](const std::string& names) {
+    return readAs("s.csv", "time,lat,lon," + names + "\n0,52,5,100,900\n9,52.01,5,100,900\n")
+        .objects.at(0)
+        .poses.at(0)
+        .height_msl_m;
+  };
+  for (const char* names : {"height_m,altitude_m", "ele_m,alt_m", "elevation_m,hgt_m", "altitude_m,alt_msl_m",
+                            "OSD.height [m],OSD.altitude [m]"})
+    EXPECT_EQ(heightOf_m(names), 900) << names;
+  for (const char* names : {"altitude_m,height_m", "alt_asl_m,altitude_m", "OSD.altitude [m],OSD.height [m]"})
+    EXPECT_EQ(heightOf_m(names), 100) << names;
 }
 
 TEST(TrackTable, HemispheresInColumnsOfTheirOwnGiveTheSigns) {
