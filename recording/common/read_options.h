@@ -20,6 +20,8 @@ struct ReadOptions {
   double gap_s = 0;
   /// Columns of a table of tracks: "latitude=Breite,longitude=Laenge,height=Hoehe:ft"; empty: by their names.
   std::string columns;
+  /// False: the heights of the file are replaced, so that assumptions on them are not told.
+  bool uses_heights = true;
   /// Names of the emitters of DIS by number, for messages. @see readEmitterNames()
   std::map<int, std::string> emitter_names;
 };

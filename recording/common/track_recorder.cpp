@@ -225,7 +225,7 @@ void TrackRecorder::fillHeights(RecordedObject& object) {
           has_before && has_after ? (here->t_s - before->t_s) / (after->t_s - before->t_s) : 0;
       const double from_m = has_before ? before->height_msl_m : has_after ? after->height_msl_m : 0;
       here->height_msl_m = from_m + (has_before && has_after ? part * (after->height_msl_m - from_m) : 0);
-      assume(
+      assumeHeight(
           has_before || has_after
               ? "height of a position without one: interpolated in time between the known ones of its object"
               : "height of a position of an object without any: 0 m is taken");

@@ -17,6 +17,11 @@ namespace emscape::interop {
 /// Faster than any object: a satellite makes 8 km/s. Steps of a track that are shorter count as this.
 constexpr double kFastest_mps = 10e3, kShortestStep_s = 1e-3;
 
+/// What to do with heights above the ground, for messages.
+constexpr const char* kHeightsAboveGround =
+    "'height_agl_m' of a track is one height above the ground for all its positions, and a track file of the "
+    "scenario format (columns t_s, latitude_deg, longitude_deg, height_agl_m) has one in each row";
+
 /// Takes positions of objects in any order.
 class TrackRecorder {
  public:
@@ -53,6 +58,10 @@ class TrackRecorder {
   ReadingTally& tally() { return recording_.tally; }
   /// Counts a position that needs an assumption, which becomes a note.
   void assume(const std::string& assumption) { ++assumptions_[assumption]; }
+  /// The same for an assumption on a height.
+  void assumeHeight(const std::string& assumption) {
+    if (options_.uses_heights) assume(assumption);
+  }
   /// Counts a pose or state against the limit of a recording. @throws Error (bad_input)
   void countSample();
 

@@ -105,10 +105,12 @@ class KmlReader : XmlTracks {
     const std::string mode = textOf(geometry, "altitudeMode");
     if (mode == "absolute") return told_m;
     if (mode == "relativeToGround" || mode == "relativeToSeaFloor") {
-      recorder_.assume("altitudeMode " + mode + ": the height is taken as above mean sea level");
+      recorder_.assumeHeight(fmt::format("altitudeMode {}: the height is taken as above mean sea level; {}",
+                                         mode, kHeightsAboveGround));
       return told_m;
     }
-    recorder_.assume("height of an object on the ground: 0 m is taken");
+    recorder_.assumeHeight(
+        "height of an object on the ground: 0 m is taken; 'height_agl_m: 0' of a track puts it there");
     return 0;
   }
 

@@ -154,7 +154,8 @@ class NmeaReader {
     if (unit == "F" || unit == "f") {
       *fix_->height_msl_m *= kMetresPerFoot;
     } else if (!unit.empty() && unit != "M" && unit != "m") {
-      recorder_.assume(fmt::format("height in '{}': taken as metres", printableText(unit.substr(0, 8))));
+      recorder_.assumeHeight(
+          fmt::format("height in '{}': taken as metres", printableText(unit.substr(0, 8))));
     }
   }
 

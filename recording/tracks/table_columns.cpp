@@ -368,6 +368,28 @@ Columns columnsByMap(const std::vector<std::string>& header, const std::string& 
   return columns;
 }
 
+std::string localDatumOf(const std::string& told) {
+  auto [name, unit] = nameAndUnit(told);  // "altitude (ft agl)", "alt_agl_ft"
+  const auto word = std::find_if(
+      kHeightWords.begin(), kHeightWords.end(),
+      [&name = name](std::string_view of_height) { return name.find(of_height) != std::string::npos; });
+  if (word != kHeightWords.end()) {
+    name.erase(name.find(*word), word->size());
+  } else if (name != "agl" && name != "relativetoground") {
+    return "";
+  }
+  const auto contains = [&name = name](std::string_view part) {
+    return name.find(part) != std::string::npos;
+  };
+  if (name == "agl" || name == "radar" || name == "radio" || name == "vps" || endsWith(name, "agl") ||
+      name.rfind("agl", 0) == 0 || endsWith(unit, "agl") || contains("aboveground") ||
+      contains("overground") || contains("abovegnd") || contains("toground"))
+    return "the ground";
+  const bool is_relative = name == "rel" || contains("relative") || contains("takeoff") ||
+                           contains("take-off") || contains("abovehome") || contains("abovelaunch");
+  return is_relative ? "the take-off point" : "";
+}
+
 bool isBaseStation(std::string_view line) {
   return line.substr(0, 4) == "MSG," && std::count(line.begin(), line.end(), ',') >= 15;
 }

@@ -61,6 +61,10 @@ Columns columnsByName(const std::vector<std::string>& header);
 /// @throws Error (usage)
 Columns columnsByMap(const std::vector<std::string>& header, const std::string& map);
 
+/// What a height is above by its name, for messages: "the ground" or "the take-off point"; empty: the name
+/// says neither, or is not of a height.
+std::string localDatumOf(const std::string& name);
+
 /// True for a line of the BaseStation format, which has no header: MSG,3,...
 bool isBaseStation(std::string_view line);
 Columns columnsOfBaseStation();

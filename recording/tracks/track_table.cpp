@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -21,6 +22,10 @@ namespace {
 
 /// Coordinates from here on are integers, as flight controllers log them.
 constexpr double kScaledFrom = 1e6;
+
+/// In the order of preference.
+constexpr std::array<Column, 3> kHeights{Column::height_msl, Column::height_ellipsoid,
+                                         Column::height_pressure};
 
 /// A line without the byte order mark.
 std::string_view lineOf(std::string_view line) {
@@ -107,6 +112,7 @@ class TableReader {
     const std::vector<std::string>& header = table_.header;
     table_.columns = columnsOf(header, options_);
     takeUnitsAbove();
+    tellLocalHeights();
     for (const Column needed : {Column::time, Column::latitude, Column::longitude}) {
       const bool is_in_position = needed != Column::time && table_.columns.count(Column::position) != 0;
       if (is_in_position || table_.columns.count(needed) != 0) continue;
@@ -127,7 +133,7 @@ class TableReader {
   /// write it.
   void takeUnitsAbove() {
     if (units_.size() != table_.header.size()) return;
-    for (const Column height : {Column::height_msl, Column::height_ellipsoid, Column::height_pressure}) {
+    for (const Column height : kHeights) {
       const auto found = table_.columns.find(height);
       if (found == table_.columns.end() || found->second.has_unit) continue;
       const std::string& unit = units_[found->second.index];
@@ -139,6 +145,31 @@ class TableReader {
   }
 
   std::string nameOf(const UnusedColumn& column) const { return printableText(table_.header[column.index]); }
+
+  bool hasHeight() const {
+    return std::any_of(kHeights.begin(), kHeights.end(),
+                       [this](Column height) { return table_.columns.count(height) != 0; });
+  }
+
+  /// Of a column that by its name has another datum than heights have. @param datum  by localDatumOf()
+  std::string localHeightText(std::size_t index, const char* use, const std::string& datum) const {
+    return fmt::format(
+        "column '{}' {}: by its name it is above {}, but heights of tracks are above mean sea level "
+        "or the ellipsoid. Add the height of {} to it in the table, and rename it; or {}",
+        printableText(table_.header[index]), use, datum, datum, kHeightsAboveGround);
+  }
+
+  /// Columns that are named as heights, but by their names have another datum.
+  void tellLocalHeights() {
+    for (const Column height : kHeights) {
+      const auto found = table_.columns.find(height);
+      if (found == table_.columns.end() || !options_.uses_heights) continue;
+      const std::size_t index = found->second.index;
+      const std::string datum = localDatumOf(table_.header[index]);
+      if (!datum.empty())
+        recorder_.tally().notes.push_back(localHeightText(index, "is taken as 'columns' says", datum));
+    }
+  }
 
   /// What tells the objects of rows apart: of the columns without a role those of texts that repeat, or of
   /// numbers if there are none.
@@ -156,9 +187,15 @@ class TableReader {
   }
 
   void tellUnused(ReadingTally& tally) const {
-    if (unused_.empty()) return;
     std::string names, example;
+    bool are_all_heights = true;
     for (const UnusedColumn& column : unused_) {
+      const std::string datum = localDatumOf(table_.header[column.index]);
+      are_all_heights = are_all_heights && !datum.empty();
+      if (!datum.empty() && !hasHeight() && options_.uses_heights) {
+        tally.notes.push_back(localHeightText(column.index, "is not used", datum));
+        continue;
+      }
       names += fmt::format("{}'{}'", names.empty() ? "" : ", ", nameOf(column));
       if (column.has_text && column.mayBeNames() && 2 * column.turns > column.rows && example.empty()) {
         example = "id=" + nameOf(column);
@@ -168,10 +205,12 @@ class TableReader {
             nameOf(column), example));
       }
     }
-    tally.notes.push_back(
-        fmt::format("not used: {} {}; --columns (or 'columns' of a track) tells what a column is, such as "
-                    "id=NAME or height=NAME:ft",
-                    unused_.size() == 1 ? "column" : "columns", names));
+    if (names.empty()) return;
+    tally.notes.push_back(fmt::format(
+        "not used: {} {}{}", names.find("', '") == std::string::npos ? "column" : "columns", names,
+        are_all_heights ? ""
+                        : "; --columns (or 'columns' of a track) tells what a column is, such as id=NAME or "
+                          "height=NAME:ft"));
   }
 
   /// Finds the columns of N or S and of E or W, which give coordinates their signs, by the first row.
@@ -275,12 +314,13 @@ class TableReader {
   /// Height above mean sea level (m), NaN if the row has none; no value: counted as bad.
   std::optional<double> heightOf_m(const std::vector<std::string>& cells, double latitude_deg,
                                    double longitude_deg) {
-    for (const Column column : {Column::height_msl, Column::height_ellipsoid, Column::height_pressure}) {
+    for (const Column column : kHeights) {
       const std::string* const cell = table_.cellOf(cells, column);
       if (cell == nullptr) continue;
       auto height_m = table_.valueOf(cells, column);
       if (!height_m && lowerCase(*cell) == "ground") {
-        recorder_.assume("height of an object on the ground: 0 m is taken");
+        recorder_.assumeHeight(
+            "height of an object on the ground: 0 m is taken; 'height_agl_m: 0' of a track puts it there");
         return 0;
       }
       const bool is_unknown = height_m ? isFill(*table_.numberOf(*cell))  // "n/a", "null", "-"
@@ -288,10 +328,10 @@ class TableReader {
       if (is_unknown) continue;
       if (!height_m) return bad(fmt::format("its height '{}' is no number", printableText(*cell)));
       if (!table_.columns.at(column).has_unit && isOfFlightradar()) {
-        recorder_.assume("height without a unit in a table of Flightradar24: taken as feet");
+        recorder_.assumeHeight("height without a unit in a table of Flightradar24: taken as feet");
         *height_m *= kMetresPerFoot;
       } else if (!table_.columns.at(column).has_unit && !isOfOpenSky(column)) {
-        recorder_.assume(fmt::format(
+        recorder_.assumeHeight(fmt::format(
             "height without a unit in column '{0}': taken as metres; if it is in feet, columns tell it: "
             "{1}={0}:ft",
             table_.nameOf(column), roleOf(column)));
@@ -300,7 +340,7 @@ class TableReader {
           std::abs(longitude_deg) <= 720)
         return heightMsl_m(latitude_deg, longitude_deg, *height_m);
       if (column == Column::height_pressure)
-        recorder_.assume("weather: a height by pressure is taken as above mean sea level");
+        recorder_.assumeHeight("weather: a height by pressure is taken as above mean sea level");
       return height_m;
     }
     return kUnknown;

@@ -62,15 +62,16 @@ std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
     return useTrack(track, name, known->second, context);
   }
   std::string bytes;
-  std::shared_ptr<const interop::Recording>& recording = context.recordings[file + "\n" + choice.columns];
+  interop::ReadOptions options;
+  options.columns = choice.columns;
+  options.uses_heights = !choice.height_agl_m;
+  std::shared_ptr<const interop::Recording>& recording =
+      context.recordings[fmt::format("{}\n{}\n{}", file, options.columns, options.uses_heights)];
   if (!context.addNamed(track, "file", recording ? nullptr : &bytes)) return {};
   TrackFile read;
   try {
-    if (!recording && isRecordedTrack(bytes, choice)) {
-      interop::ReadOptions options;
-      options.columns = choice.columns;
+    if (!recording && isRecordedTrack(bytes, choice))
       recording = std::make_shared<const interop::Recording>(interop::readRecordingIn(bytes, file, options));
-    }
     read = recording ? recordedTrack(*recording, choice, parseUtc_ms(context.epoch_utc))
                      : TrackFile{parseTrack(file, bytes, track.locationOf("file"), context.problems), {}};
   } catch (const Error& error) {

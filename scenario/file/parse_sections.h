@@ -39,7 +39,7 @@ struct ParseContext {
   propagation::Atmosphere atmosphere;  ///< of the scenario
   std::string epoch_utc;               ///< of the scenario; empty: none
   FrameOrigin origin;                  ///< of its region
-  /// Recordings of other programs that were read, by resolved name and columns.
+  /// Recordings of other programs that were read, by resolved name and choices.
   std::map<std::string, std::shared_ptr<const interop::Recording>> recordings;
   std::set<std::string> told_of_tracks;  ///< warnings: a file may have the tracks of many platforms
 

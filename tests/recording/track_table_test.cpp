@@ -46,10 +46,9 @@ TEST(TrackTable, ColumnsWithoutAUseAreNamed) {
   const Recording r = readAs("s.csv",
                              "time,lat,lon,altitude_agl_m,tail\n0,52,5,150,A\n5,52.001,5,150,B\n"
                              "10,52,5,150,A\n15,52.001,5,150,B\n");
-  EXPECT_THAT(
-      r.tally.notes,
-      testing::IsSupersetOf({HasSubstr("not used: columns 'altitude_agl_m', 'tail'; --columns"),
-                             HasSubstr("of column 'tail' take turns"), HasSubstr("0 m is taken (4 times)")}));
+  EXPECT_THAT(r.tally.notes, testing::IsSupersetOf({HasSubstr("not used: column 'tail'; --columns"),
+                                                    HasSubstr("of column 'tail' take turns"),
+                                                    HasSubstr("0 m is taken (4 times)")}));
 }
 
 TEST(TrackTable, UnknownHeightsWithinAFlightAreInterpolatedInTime) {
@@ -97,6 +96,36 @@ TEST(TrackTable, OfSeveralHeightsTheFirstNameOfTheListIsTakenWhereverItStands) {
     EXPECT_EQ(heightOf_m(names), 900) << names;
   for (const char* names : {"altitude_m,height_m", "alt_asl_m,altitude_m", "OSD.altitude [m],OSD.height [m]"})
     EXPECT_EQ(heightOf_m(names), 100) << names;
+}
+
+TEST(TrackTable, HeightsAboveTheGroundByTheirNameAreNotAdvisedAsHeights) {
+  const auto notesOf = [](const std::string& names, const std::string& columns = "",
+                          bool uses_heights = true) {
+    ReadOptions options;
+    options.columns = columns;
+    options.uses_heights = uses_heights;
+    const Recording r = readAs("s.csv", "time,lat,lon," + names + "\n0,52,5,9\n9,52.01,5,9\n", options);
+    std::string all;
+    for (const std::string& note : r.tally.notes) all += note + "\n";
+    return all;
+  };
+  for (const char* name :
+       {"height_agl", "AGL (ft)", "alt_agl_ft", "altitude (agl)", "altitude [ft AGL]", "HeightAGL",
+        "height_above_ground_at_drone_location(feet)", "OSD.vpsHeight [ft]", "radar_altitude"})
+    EXPECT_THAT(
+        notesOf(name),
+        testing::AllOf(HasSubstr("by its name it is above the ground"), HasSubstr("is not used"),
+                       HasSubstr("'height_agl_m' of a track"), testing::Not(HasSubstr("height=NAME"))))
+        << name;
+  for (const char* name : {"relative_alt", "rel_alt_m", "height_above_takeoff(feet)", "OSD.height [ft]"})
+    EXPECT_THAT(notesOf(name), HasSubstr("Add the height of the take-off point to it")) << name;
+  EXPECT_THAT(notesOf("eagle_alt"),
+              testing::AllOf(testing::Not(HasSubstr("above the ground")), HasSubstr("height=NAME:ft")));
+  EXPECT_THAT(notesOf("height_agl", "height=height_agl:m"),
+              testing::AllOf(HasSubstr("by its name it is above the ground"),
+                             HasSubstr("is taken as 'columns' says")));
+  EXPECT_EQ(notesOf("height_agl", "", false), "not used: column 'height_agl'\n") << "heights are replaced";
+  EXPECT_EQ(notesOf("alt", "", false), "") << "a unit that is not known";
 }
 
 TEST(TrackTable, HemispheresInColumnsOfTheirOwnGiveTheSigns) {

@@ -194,6 +194,17 @@ TEST_F(RecordedTrack, WhatIsTrueOfAFileIsToldOnceForAllItsPlatforms) {
       1);
 }
 
+TEST_F(RecordedTrack, AHeightAboveTheGroundNeedsNoHeightsOfTheFile) {
+  folder_.write("agl.csv", "time,lat,lon,height_agl\n0,52,5,30\n9,52.1,5,30\n");
+  pointsOf("file: agl.csv");
+  EXPECT_THAT(problems_,
+              testing::IsSupersetOf({HasSubstr("0 m is taken"), HasSubstr("'height_agl_m' of a track")}));
+  const auto points = pointsOf("file: agl.csv, height_agl_m: 30");
+  ASSERT_THAT(points, SizeIs(2)) << testing::PrintToString(problems_);
+  EXPECT_EQ(points[1].position.height_agl_m, 30);
+  EXPECT_THAT(problems_, testing::Not(testing::Contains(HasSubstr("0 m is taken"))));
+}
+
 TEST_F(RecordedTrack, AnEditReadsAnotherObjectOfTheSameFile) {
   folder_.write("two.csv", "time,id,lat,lon,alt\n0,a,52,5,10\n0,b,52,5,20\n9,a,52.1,5,10\n9,b,52.1,5,20\n");
   const ParseResult result = read("file: two.csv, object: a");
