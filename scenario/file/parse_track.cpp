@@ -4,6 +4,7 @@
 
 #include "document/csv.h"
 #include "document/schema_check.h"
+#include "recording/common/text.h"
 #include "scenario/file/parse_sections.h"
 
 namespace emscape::scenario {
@@ -22,6 +23,7 @@ class TrackReader {
       : file_(file), named_at_(named_at), problems_(problems) {}
 
   std::vector<TrackPoint> read(const std::string& text) {
+    if (isOfAnotherProgram(text)) return {};
     CsvReader reader(text);
     for (CsvRow row; faults_ <= kMaxFaults && reader.next(row);) {
       if (columns_.empty()) {
@@ -51,6 +53,27 @@ class TrackReader {
       problems_.addErrorElsewhere(named_at_, {file_, line, column},
                                   message + " (further faults of this file are not reported)");
     }
+  }
+
+  /// Reports a table with columns of which none is one of the format.
+  bool isOfAnotherProgram(const std::string& text) {
+    CsvReader reader(text, document::separatorOf(text));
+    CsvRow row;
+    if (!reader.next(row) || row.cells.size() < 2) return false;
+    std::string names;
+    for (const CsvCell& cell : row.cells) {
+      const std::string name = interop::lowerCase(std::string(cell.text));
+      if (name.rfind("t_s", 0) == 0 || trackRowSpec().find(name, nullptr) != nullptr) return false;
+      names += (names.empty() ? "" : ", ") + interop::printableText(std::string(cell.text));
+    }
+    fault(row.line, 1,
+          fmt::format(
+              "the table has no columns with names that are known for time and position; 'columns' of "
+              "the track names them: columns: \"time=NAME,latitude=NAME,longitude=NAME,height=NAME:ft\", "
+              "with position=NAME for MGRS, UTM or both coordinates in one column; where several columns "
+              "make it, join them in one first. It has {}",
+              names));
+    return true;
   }
 
   void readHeader(const std::vector<CsvCell>& cells, int line) {

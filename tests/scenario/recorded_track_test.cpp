@@ -11,6 +11,7 @@
 namespace emscape::scenario {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -192,6 +193,25 @@ TEST_F(RecordedTrack, WhatIsTrueOfAFileIsToldOnceForAllItsPlatforms) {
       std::count_if(problems_.begin(), problems_.end(),
                     [](const std::string& text) { return text.find("0 m is taken") != std::string::npos; }),
       1);
+}
+
+TEST_F(RecordedTrack, ATableWithUnknownNamesIsToldOfColumnsWhateverSeparatesThem) {
+  for (const char* text : {"Zeit [s];Breite;Laenge;Hoehe [m]\n0;52,5;5;9\n9;52,6;5;9\n",
+                           "Zeit [s]\tBreite\tLaenge\tHoehe [m]\n0\t52.5\t5\t9\n9\t52.6\t5\t9\n"}) {
+    folder_.write("own.csv", text);
+    pointsOf("file: own.csv");
+    EXPECT_THAT(problems_, ElementsAre(AllOf(HasSubstr("columns: \"time=NAME,latitude=NAME"),
+                                             HasSubstr("It has Zeit [s], Breite, Laenge, Hoehe [m]"))));
+    const auto points = pointsOf(
+        "file: own.csv, columns: \"time=Zeit [s],latitude=Breite,longitude=Laenge,height=Hoehe [m]\"");
+    ASSERT_THAT(points, SizeIs(2)) << testing::PrintToString(problems_);
+    EXPECT_EQ(points[1].position.latitude_deg, 52.6);
+  }
+  folder_.write("own.csv", "time,mgrs,alt_m\n0,19T BJ 92602 08632,900\n60,19T BJ 92660 10854,900\n");
+  pointsOf("file: own.csv");
+  EXPECT_THAT(problems_, ElementsAre(HasSubstr("position=NAME for MGRS")));
+  EXPECT_THAT(pointsOf("file: own.csv, columns: \"time=time,position=mgrs,height=alt_m\""), SizeIs(2))
+      << testing::PrintToString(problems_);
 }
 
 TEST_F(RecordedTrack, AHeightAboveTheGroundNeedsNoHeightsOfTheFile) {
