@@ -72,7 +72,8 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
   } else {
     constexpr double kTurn_deg = 360;
     const double east = transform[0] + columns * transform[1] + rows * transform[2];
-    fail(remedyForNoSystem(std::max(std::abs(transform[0]), std::abs(east)) > kTurn_deg));
+    fail(remedyForNoSystem(source, keys.has_classes,
+                           std::max(std::abs(transform[0]), std::abs(east)) > kTurn_deg));
   }
   HeightFacts facts{name,
                     source.ownName(),

@@ -149,7 +149,14 @@ std::string remedyForNoGeoreference(const ElevationSource& source, bool is_tile)
       shellWord(source.member.empty() ? source.file : source.member));
 }
 
-std::string remedyForNoSystem(bool is_plane) {
+std::string remedyForNoSystem(const ElevationSource& source, bool has_classes, bool is_plane) {
+  if (has_classes)
+    return fmt::format(
+        "has no coordinate reference system{}. gdal_translate -a_srs {} {} COVER.tif makes a copy that "
+        "states {}",
+        is_plane ? ", and its coordinates are no degrees" : "", is_plane ? "EPSG:32633" : "EPSG:4326",
+        shellWord(source.ownName()),
+        is_plane ? "one, such as UTM zone 33 north" : "latitudes and longitudes");
   return is_plane ? "has no coordinate reference system, and its coordinates are no degrees. `crs` of the "
                     "file in the "
                     "scenario states it, such as EPSG:32633 for UTM zone 33 north: files: [{file: NAME, crs: "

@@ -18,8 +18,9 @@ std::string remedyForContainer(GDALDatasetH dataset, const ElevationSource& sour
 std::string remedyForPicture(int band, const std::string& colour, int bands);
 /// @param is_tile  its colours encode heights, as those of web maps' tiles do
 std::string remedyForNoGeoreference(const ElevationSource& source, bool is_tile);
+/// @param has_classes  the file is of land cover, whose items have no keys
 /// @param is_plane  the coordinates are too large for degrees
-std::string remedyForNoSystem(bool is_plane);
+std::string remedyForNoSystem(const ElevationSource& source, bool has_classes, bool is_plane);
 std::string remedyForTileWithoutPosition();
 
 /// Describes a beginning of a file that is something else than its name says: a web page, a pointer of Git

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <set>
 
@@ -129,6 +130,22 @@ TEST_F(LandCoverFiles, OfAnotherProductAreRefusedAndTheRemedyHelps) {
               AllOf(HasSubstr("no code of the files within the area is in the table 'worldcover'"),
                     HasSubstr("corine")));
   EXPECT_EQ(nameAt(LandCover(spec(file, CoverTable::corine), kBox), 36.4, kBorder_deg + 0.02),
+            "broad-leaved forest");
+}
+
+TEST_F(LandCoverFiles, WithoutASystemNameACommandThatStatesIt) {
+  test::DemFile file =
+      test::geographicDem(-84.5, 36.7, 0.001, 600, 600, [](double, double) { return 311.0; });
+  file.crs = "";
+  file.write(folder_ / "codes.tif");
+  const std::string codes = test::wholeNumbers(folder_ / "codes.tif", folder_ / "a.tif");
+  EXPECT_THAT(test::errorOf([&] { LandCover(spec(codes, CoverTable::corine), kBox); }),
+              AllOf(HasSubstr("gdal_translate -a_srs EPSG:4326 " + codes + " COVER.tif"),
+                    testing::Not(HasSubstr("crs:"))));
+  const std::string command = "gdal_translate -q -a_srs EPSG:4326 " + codes + " " + (folder_ / "COVER.tif");
+  if (std::system((command + " > /dev/null 2>&1").c_str()) != 0)
+    GTEST_SKIP() << "gdal_translate is not installed";
+  EXPECT_EQ(nameAt(LandCover(spec(folder_ / "COVER.tif", CoverTable::corine), kBox), 36.4, kBorder_deg),
             "broad-leaved forest");
 }
 
