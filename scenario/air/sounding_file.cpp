@@ -101,6 +101,21 @@ bool completeHeights(std::vector<SoundingLevel>& levels) {
   return true;
 }
 
+/// What a file that was cut in its last sounding shows of it; empty: nothing.
+std::string cutOf(const std::string& text) {
+  const std::size_t raw = text.rfind("%RAW%");
+  if (raw != std::string::npos && text.find("%END%", raw) == std::string::npos)
+    return "its last sounding has no %END%: the file was cut there, and levels may be missing or wrong";
+  const std::vector<std::string_view> lines = soundingLines(text);
+  if (text.empty() || text.back() == '\n' || text.back() == '\r') return "";
+  const std::string_view last = document::withoutBlanks(lines.back());
+  if (last.empty() || last.find_first_of("0123456789-") != 0) return "";
+  return fmt::format(
+      "line {}, a level, has no end: if the file was cut there, its values are wrong; remove it, or "
+      "end the line",
+      lines.size());
+}
+
 class Sounding {
  public:
   Sounding(const SoundingArchive& archive, SoundingRecord record, const std::string& file)
@@ -234,6 +249,7 @@ RefractivityFile readSounding(const std::string& file, std::optional<std::int64_
     throw Error(ErrorCode::bad_input, {file, 1, 1},
                 "no soundings of IGRA 2 (a header begins with #), the University of Wyoming (a heading has "
                 "'Observations at') or the Storm Prediction Center (%TITLE% and %RAW%)");
+  const int last_line = records.back().line;
   // The nearest comes first; without a time the last.
   std::reverse(records.begin(), records.end());
   const auto distance = [&](const SoundingRecord& record) {
@@ -261,6 +277,8 @@ RefractivityFile readSounding(const std::string& file, std::optional<std::int64_
           time_ms ? "sounding nearest in time, that" : "last sounding, that", first->record().time_utc,
           first->obstacle(), i == 1 ? "the next one is" : fmt::format("{} were tried, the next one is", i)));
     }
+    if (const std::string cut = record.line == last_line ? cutOf(soundingText(file)) : ""; !cut.empty())
+      result.warnings.push_back(fmt::format("{}: {}", file, cut));
     result.sounding = SoundingOrigin{record.station, record.time_utc, record.time_ms, record.position};
     result.field.profiles = {profileOfLevels(std::move(few.levels))};
     return result;

@@ -281,6 +281,20 @@ TEST_F(Soundings, AreReadFromListsOfWyoming) {
   EXPECT_THAT(soundingError(text), HasSubstr("expected a time such as 12Z 02 Jul 2020"));
 }
 
+TEST_F(Soundings, ThatWereCutAreTold) {
+  const std::string spc =
+      "%TITLE%\n OAX   140616/1900\n%RAW%\n 955.00, 520.00, 22.00, 18.00\n 897.00, 1020.00, 18.75, 14.75\n";
+  EXPECT_THAT(sounding(spc + "%END%\n").warnings, testing::IsEmpty());
+  EXPECT_THAT(sounding(spc).warnings,
+              testing::ElementsAre(HasSubstr("station.txt: its last sounding has no %END%")));
+  const std::string list(kList), rows = list.substr(0, list.find('\n', list.find("  850.0")) + 1);
+  ASSERT_GT(rows.size(), 100U);
+  EXPECT_THAT(sounding(list).warnings, testing::IsEmpty());
+  EXPECT_THAT(sounding(rows).warnings, testing::IsEmpty()) << "the list alone, with its last line's end";
+  EXPECT_THAT(sounding(rows.substr(0, rows.find("  850.0") + 27)).warnings,
+              testing::ElementsAre(HasSubstr("a level, has no end: if the file was cut there")));
+}
+
 TEST_F(Soundings, AreReadFromArchivesAsTheyAreDownloaded) {
   const std::string text = folder_.write("USM00072649-data.txt", kChanhassen);
   test::writeZip(folder_ / "USM00072649-data.txt.zip", {{"USM00072649-data.txt", text}});
