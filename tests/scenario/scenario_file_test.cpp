@@ -390,7 +390,7 @@ TEST_F(ScenarioYaml, TapersArraysAndApertures) {
 
 TEST_F(ScenarioYaml, ARotationThatStandsStillIsAFixedBeam) {
   const std::string text = replaced(valid_, "rate_rpm: 11.95", "rate_rpm: 0, azimuth_deg: 20");
-  const ScanSpec& scan = load(text)->emitters[0].scan;
+  const ScanSpec scan = load(text)->emitters[0].scan;
   EXPECT_EQ(scan.kind, ScanKind::fixed);
   EXPECT_EQ(scan.azimuth_deg, 20);
 }
