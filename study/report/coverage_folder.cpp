@@ -41,7 +41,8 @@ void findInputs(const Json& record, CoverageFolder& folder) {
   const Json& of = record.at("scenarios").at(0);
   known->name = of.at("name");
   known->file = of.at("file");  // as it was given
-  if (const std::string path = of.value("path", ""); fs::exists(path)) known->file = path;
+  std::error_code failed;
+  if (const std::string path = of.value("path", ""); fs::exists(path, failed)) known->file = path;
   known->hash = of.at("hash");
   folder.scenario = known;
   std::vector<scenario::Edit> edits;

@@ -127,6 +127,9 @@ TEST(Compare, SLOW_FoldersWithoutTheirScenariosAreComparedButNotExplained) {
                  "emitters.transmitter.power_w=" + std::string(power)});
   }
   std::filesystem::remove(scenario);
+  json study = json::parse(readFile(folder / "10/study.json"));
+  study["scenarios"][0]["path"] = std::string(300, 'a');  // longer than a file's name can be
+  writeFile(folder / "10/study.json", study.dump());
   const ProgramResult result =
       runWell({"compare", folder / "10", folder / "1000", "-o", folder / "out", "--quiet"});
   EXPECT_THAT(result.err, HasSubstr("own.yaml or one of its files is not there or has changed"));
