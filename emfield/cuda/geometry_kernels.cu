@@ -53,7 +53,10 @@ __global__ void __launch_bounds__(kColumnThreads)
       const auto add = [&](int i, float height_msl_m) {
         slope.add(height_msl_m, geometry.slopeTo(height_msl_m, shadow.terms[i]));
       };
-      visitPosts(task.station, task.ground, path, count, add, task.firstPost(grid, c, path, count));
+      const auto isHidden = [&](int first, int last, float highest_msl_m) {
+        return task.slopeBound(first, last, highest_msl_m) <= slope.highest;
+      };
+      visitPosts(task.station, task.ground, path, count, add, task.firstPost(grid, c, path, count), isHidden);
       return slope.value();
     };
     const float edge_m = task.edge_m(grid, c, slopeTo);

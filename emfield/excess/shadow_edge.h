@@ -79,6 +79,16 @@ struct ShadowTask {
     return begin;
   }
 
+  /// Slope that none of the posts `first` to `last` exceeds, none of which is higher than a height.
+  EMSCAPE_HD float slopeBound(int first, int last, float height_msl_m) const {
+    constexpr float kRounding_m = 0.01f;
+    const HorizonGeometry<float> g = geometry();
+    const float from_centre_m = g.effective_earth_radius_m + height_msl_m + kRounding_m;
+    const float rise_m =
+        height_msl_m + kRounding_m - g.station_height_msl_m - terms[first].versine * from_centre_m;
+    return rise_m / (terms[rise_m > 0 ? first : last].sine * from_centre_m);
+  }
+
   /// Height (m above mean sea level) of the grazing ray over a range.
   EMSCAPE_HD float edgeHeight_m(float slope, double range_m) const {
     return edgeHeight_m(slope, range_m, geometry().termsAt(range_m));

@@ -6,8 +6,10 @@
 /// single path use the same posts.
 #pragma once
 
+#include <type_traits>
 #include <vector>
 
+#include "base/math/device_loop.h"
 #include "emfield/ground/terrain_walk.h"
 #include "emscape/base/host_device.h"
 #include "emscape/scenario/terrain/terrain.h"
@@ -112,45 +114,111 @@ float highestPost_m(const scenario::TerrainView& terrain);
 /// @param columns  set to HighestOfTiles::columns
 std::vector<float> highestOfTiles(const scenario::TerrainRaster& raster, int& columns);
 
+/// The tiles of HighestOfTiles along a chord.
+class TilesOfChord {
+ public:
+  EMSCAPE_HD TilesOfChord(const GroundPosts& ground, const RasterChord& chord) : chord_(chord) {
+    if (ground.tiles.msl_m == nullptr || chord.corner_msl_m == nullptr) return;
+    const scenario::TerrainRaster& raster = ground.terrain.rasters[0];
+    const long long corner = chord.corner_msl_m - raster.heights_msl_m;
+    row_ = static_cast<int>(corner / raster.columns);
+    column_ = static_cast<int>(corner - static_cast<long long>(row_) * raster.columns);
+    tiles_ = ground.tiles;
+  }
+  EMSCAPE_HD bool areKnown() const { return tiles_.msl_m != nullptr; }
+  /// A height that no post between two ranges exceeds; infinite beside a void and over more than 3 x 3 tiles.
+  EMSCAPE_HD float highest_m(double from_m, double to_m) const {
+    const auto from = static_cast<float>((from_m - chord_.begin_m) * chord_.per_m);
+    const auto to = static_cast<float>((to_m - chord_.begin_m) * chord_.per_m);
+    const Range columns = tilesAlong(chord_.column, column_, from, to);
+    const Range rows = tilesAlong(chord_.row, row_, from, to);
+    if (columns.last - columns.first > 2 || rows.last - rows.first > 2) return HUGE_VALF;
+    float highest = -HUGE_VALF;
+    for (int row = rows.first; row <= rows.last; ++row) {
+      for (int column = columns.first; column <= columns.last; ++column)
+        highest = fmaxf(highest, tiles_.msl_m[row * tiles_.columns + column]);
+    }
+    return highest;
+  }
+
+ private:
+  struct Range {
+    int first, last;
+  };
+  static EMSCAPE_HD Range tilesAlong(const Parabola<float>& line, int origin, float from, float to) {
+    const float a = line.at(from), b = line.at(to);
+    const float beside = fmaf(std::fabs(line.c[2]), (to - from) * (to - from) / 4, 0.001f);
+    return {(origin + static_cast<int>(fminf(a, b) - beside)) >> HighestOfTiles::kShift,
+            (origin + static_cast<int>(fmaxf(a, b) + beside)) >> HighestOfTiles::kShift};
+  }
+
+  const RasterChord& chord_;
+  HighestOfTiles tiles_;
+  int row_ = 0, column_ = 0;  ///< of the chord's corner
+};
+
+/// visitPosts() leaves out no posts.
+struct NoPosts {
+  EMSCAPE_HD bool operator()(int, int, float) const { return false; }
+};
+
 /// Calls visit(post, height above mean sea level (m)) for the first `count` posts toward a point, in their
 /// order; NaN where the terrain is missing.
 /// @param first  index of the first post
-template <class Visit>
+/// @param skips  skips(first post, last post, height (m)): true if those posts, none of which is higher, may
+/// be left out. Threads of a warp leave them out together.
+template <class Visit, class Skips = NoPosts>
 EMSCAPE_HD void visitPosts(const Station& station, const GroundPosts& ground, const FastInverse& path,
-                           int count, Visit visit, int first = 0) {
+                           int count, Visit visit, int first = 0, Skips skips = {}) {
   if (ground.is_smooth) {
     for (int i = first; i < count; ++i) visit(i, 0.0f);
     return;
   }
-  constexpr int kAtOnce = 4;  // independent loads
+  constexpr int kAtOnce = 4;    // independent loads
+  constexpr int kOfTiles = 16;  // regular posts are at half the spacing of the elevation model
   TerrainWalk walk(station, ground.terrain, path);
   const double* const ranges_m = ground.ranges_m;
   for (int i = first; i < count;) {
     const TerrainChord& chord = walk.chordAt(ranges_m[i]);
     const RasterChord in_raster = chord.in_raster;
     const int beyond = ground.lastBefore(walk.endOfChord_m(ranges_m[i])) + 1;
-    const int end = beyond <= i ? i + 1 : beyond < count ? beyond : count;
-    while (i < end) {
-      for (; in_raster.corner_msl_m != nullptr && i + kAtOnce <= end; i += kAtOnce) {
-        float heights_msl_m[kAtOnce];
-        bool is_known = true;
-        EMSCAPE_UNROLL
-        for (int n = 0; n < kAtOnce; ++n) {
-          heights_msl_m[n] = in_raster.heightAt(ranges_m[i + n]);
-          is_known = is_known && heights_msl_m[n] == heights_msl_m[n];
+    const int end_of_chord = beyond <= i ? i + 1 : beyond < count ? beyond : count;
+    const TilesOfChord tiles(ground, in_raster);
+    int untried = 1;  // tiles to go through, after one that is not skipped
+    while (i < end_of_chord) {
+      int end = end_of_chord;
+      if (!std::is_same_v<Skips, NoPosts> && tiles.areKnown()) {
+        const int last = smaller(i + kOfTiles, end_of_chord) - 1;
+        const bool is_needed = !skips(i, last, tiles.highest_m(ranges_m[i], ranges_m[last]));
+        if (!isForAnyLane(is_needed)) {
+          i = last + 1;
+          untried = 1;
+          continue;
         }
-        if (!is_known) break;
-        EMSCAPE_UNROLL
-        for (int n = 0; n < kAtOnce; ++n) visit(i + n, heights_msl_m[n]);
+        end = smaller(i + untried * kOfTiles, end_of_chord);
+        untried = smaller(2 * untried, 4);
       }
-      // Beside voids, outside the finest raster, and the last ones of a chord.
-      for (const int next = i + kAtOnce < end ? i + kAtOnce : end; i < next; ++i) {
-        visit(i, chord.heightAt(ground.terrain, ranges_m[i]));
+      while (i < end) {
+        for (; in_raster.corner_msl_m != nullptr && i + kAtOnce <= end; i += kAtOnce) {
+          float heights_msl_m[kAtOnce];
+          bool is_known = true;
+          EMSCAPE_UNROLL
+          for (int n = 0; n < kAtOnce; ++n) {
+            heights_msl_m[n] = in_raster.heightAt(ranges_m[i + n]);
+            is_known = is_known && heights_msl_m[n] == heights_msl_m[n];
+          }
+          if (!is_known) break;
+          EMSCAPE_UNROLL
+          for (int n = 0; n < kAtOnce; ++n) visit(i + n, heights_msl_m[n]);
+        }
+        // Beside voids, outside the finest raster, and the last ones of a chord.
+        for (const int next = i + kAtOnce < end ? i + kAtOnce : end; i < next; ++i) {
+          visit(i, chord.heightAt(ground.terrain, ranges_m[i]));
+        }
       }
     }
   }
 }
-
 /// The land cover at a range of a walk.
 EMSCAPE_HD inline scenario::CoverValues coverAt(TerrainWalk& walk, const GroundPosts& ground,
                                                 double range_m) {

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "emfield/excess/shadow_edge.h"
 #include "emfield/ground/read_posts.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/link/path_budget.h"
@@ -109,6 +110,44 @@ TEST(GroundPosts, VectorLoopsReadHeightsOfTerrain) {
     }
   }
   EXPECT_GT(unknown, 100);
+}
+
+TEST(GroundPosts, TilesLeaveOutOnlyPostsBelowTheHorizon) {
+  const MadeTerrain terrain(44.5, -71.5, 1.0, 0.1);
+  const std::vector<double> ranges_m = postRanges(70e3, terrain.postSpacing_m());
+  GroundPosts ground = groundPosts(&terrain, ranges_m);
+  const std::vector<float> tiles = highestOfTiles(terrain.view().rasters[0], ground.tiles.columns);
+  ground.tiles.msl_m = tiles.data();
+  long long visited = 0, all = 0;
+  for (const double height_m : {20, 600, 900, 2500}) {
+    ShadowTask task{makeStation({44.5, -71.5, height_m}, height_m, 4.0 / 3), ground};
+    std::vector<RangeTerms<float>> terms;
+    for (const double range_m : ranges_m) terms.push_back(task.geometry().termsAt(range_m));
+    task.terms = terms.data();
+    for (double azimuth_deg = 0; azimuth_deg < 360; azimuth_deg += 1.7) {
+      const double azimuth_rad = degToRad(azimuth_deg);
+      const FastInverse path{60e3, std::sin(azimuth_rad), std::cos(azimuth_rad)};
+      const int count = ground.lastBefore(path.distance_m) + 1;
+      propagation::GrazingSlope<float> slope, of_all;
+      const auto addTo = [&](propagation::GrazingSlope<float>& to, long long& visits) {
+        return [&](int i, float here_msl_m) {
+          to.add(here_msl_m, task.geometry().slopeTo(here_msl_m, terms[static_cast<std::size_t>(i)]));
+          ++visits;
+        };
+      };
+      visitPosts(task.station, ground, path, count, addTo(of_all, all), 1);
+      visitPosts(task.station, ground, path, count, addTo(slope, visited), 1,
+                 [&](int first, int last, float highest_msl_m) {
+                   return task.slopeBound(first, last, highest_msl_m) <= slope.highest;
+                 });
+      if (std::isnan(of_all.value())) {
+        ASSERT_TRUE(std::isnan(slope.value())) << azimuth_deg << " deg, " << height_m << " m";
+      } else {
+        ASSERT_EQ(slope.value(), of_all.value()) << azimuth_deg << " deg, " << height_m << " m";
+      }
+    }
+  }
+  EXPECT_LT(visited, all * 8 / 10);
 }
 
 /// A path over an elevation model, and grids of large and of small voxels with its end at a voxel's centre.
