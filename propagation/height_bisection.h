@@ -11,6 +11,21 @@ namespace emscape::propagation {
 /// two.
 constexpr int kBisectionStep = 16;
 
+/// Values between two indices, on a line.
+EMSCAPE_HD inline void drawLine(float* out, int begin, int end) {
+  for (int i = begin + 1; i < end; ++i) {
+    const float part = static_cast<float>(i - begin) / static_cast<float>(end - begin);
+    out[i] = out[begin] + part * (out[end] - out[begin]);
+  }
+}
+/// True if the values on either side of `middle` may be taken from lines.
+EMSCAPE_HD inline bool isStraight(const float* out, int begin, int middle, int end, float tolerance_db) {
+  constexpr float kSteep_db = 3;
+  const float part = static_cast<float>(middle - begin) / static_cast<float>(end - begin);
+  const float line = out[begin] + part * (out[end] - out[begin]);
+  return std::fabs(out[middle] - line) <= tolerance_db && std::fabs(out[end] - out[begin]) <= kSteep_db;
+}
+
 /// Evaluates a function at some indices of 0..count - 1 and interpolates linearly between them. It is
 /// evaluated every kBisectionStep indices, at the last one, and between two evaluations if the value half way
 /// differs from their line by more than a tolerance, or if the slope is so large that a bend may be missed.
@@ -20,28 +35,16 @@ constexpr int kBisectionStep = 16;
 template <class Evaluate>
 EMSCAPE_HD void fillByBisection(Evaluate evaluate, int count, float tolerance_db, float* out) {
   constexpr int kDeepest = 8;
-  constexpr float kSteep_db = 3;
   if (count <= 0) return;
-  const auto drawLine = [out](int begin, int end) {
-    for (int i = begin + 1; i < end; ++i) {
-      const float part = static_cast<float>(i - begin) / static_cast<float>(end - begin);
-      out[i] = out[begin] + part * (out[end] - out[begin]);
-    }
-  };
-  const auto isStraight = [&](int begin, int middle, int end) {
-    const float part = static_cast<float>(middle - begin) / static_cast<float>(end - begin);
-    const float line = out[begin] + part * (out[end] - out[begin]);
-    return std::fabs(out[middle] - line) <= tolerance_db && std::fabs(out[end] - out[begin]) <= kSteep_db;
-  };
   // One call site only, so that the threads of a GPU's warp call the function together.
   int ends[kDeepest];  // of the pending intervals, the nearest last
   int waiting = 0, from = 0, at = 0;
   bool is_middle = false;
   for (;;) {
     out[at] = evaluate(at);
-    if (is_middle && isStraight(from, at, ends[waiting - 1])) {
-      drawLine(from, at);
-      drawLine(at, ends[waiting - 1]);
+    if (is_middle && isStraight(out, from, at, ends[waiting - 1], tolerance_db)) {
+      drawLine(out, from, at);
+      drawLine(out, at, ends[waiting - 1]);
       from = ends[--waiting];
     } else {
       ends[waiting++] = at;

@@ -3,6 +3,7 @@
 
 #include "base/cuda/cuda_memory.h"
 #include "emfield/cuda/column_tiles.h"
+#include "emfield/cuda/itm_kernels.h"
 
 namespace emscape::emfield::cuda {
 namespace {
@@ -90,10 +91,6 @@ __global__ void __launch_bounds__(kColumnThreads)
   const ExcessScratch scratch = memory.scratch(n);
   const ExcessColumn column = task.readSegment(run.first + n, run.segment, scratch, PostReader{});
   const int first = task.grid.firstLayer(run.segment);
-  if constexpr (std::is_same_v<Model, propagation::ItmExcess>) {  // that of `diffraction`
-    for (int k = first; k < first + column.count; ++k)
-      scratch.excess_db[k] = to.out.excess.get(k * task.grid.column_count + run.first + n);
-  }
   const unsigned warnings = task.model.begin(column, scratch, scratch.excess_db + first);
   memory.begun(n) = {column, warnings == 0};
   if (warnings == 0) return;
@@ -133,6 +130,8 @@ __global__ void __launch_bounds__(kColumnThreads)
 template <class Model>
 constexpr bool hasOwnKernel =
     std::is_same_v<Model, propagation::PeExcess> || std::is_same_v<Model, DiffractionExcess>;
+template <class Model>
+constexpr bool isItm = std::is_same_v<Model, propagation::ItmExcess>;
 
 template <class Model>
 void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, const ColumnMemory& memory,
@@ -172,7 +171,11 @@ void fillExcess(const EmitterExcess& excess, const Station& station, const Exces
           ExcessTask<Model> task{m, excess.air, station, grid, ground, excess.terminal};
           task.ground.is_raised = excess.is_raised && ground.terrain.hasCover();
           task.ground.has_clutter = excess.has_clutter;
-          launchExcess(task, to, ColumnMemory(scratch, task.posts(), grid.layers), stream);
+          if constexpr (isItm<Model>) {
+            fillItm(task, to, scratch, stream);
+          } else {
+            launchExcess(task, to, ColumnMemory(scratch, task.posts(), grid.layers), stream);
+          }
         }
       },
       excess.model);

@@ -228,17 +228,20 @@ EMSCAPE_HD inline scenario::CoverValues coverAt(TerrainWalk& walk, const GroundP
                                        chord.position.longitude_rad.at(part));
 }
 
-/// Reads TerrainProfile::cover_m at ranges along a path.
+/// TerrainProfile::cover_m at a range of a walk.
+EMSCAPE_HD inline float coverHeightAt(TerrainWalk& walk, const GroundPosts& ground, double range_m,
+                                      float ground_msl_m) {
+  const TerrainChord& chord = walk.chordAt(range_m);
+  const double part = (range_m - chord.in_raster.begin_m) * chord.in_raster.per_m;
+  return ground.terrain.coverAt(chord.position.latitude_rad.at(part), chord.position.longitude_rad.at(part),
+                                ground_msl_m);
+}
+/// The same at ranges along a path.
 EMSCAPE_HD inline void readCover(const Station& station, const GroundPosts& ground, const FastInverse& path,
                                  const double* ranges_m, const float* ground_msl_m, int count,
                                  float* cover_m) {
   TerrainWalk walk(station, ground.terrain, path);
-  for (int i = 0; i < count; ++i) {
-    const TerrainChord& chord = walk.chordAt(ranges_m[i]);
-    const double part = (ranges_m[i] - chord.in_raster.begin_m) * chord.in_raster.per_m;
-    cover_m[i] = ground.terrain.coverAt(chord.position.latitude_rad.at(part),
-                                        chord.position.longitude_rad.at(part), ground_msl_m[i]);
-  }
+  for (int i = 0; i < count; ++i) cover_m[i] = coverHeightAt(walk, ground, ranges_m[i], ground_msl_m[i]);
 }
 
 /// Reads the regular posts that are nearer than a point. Host and device.

@@ -28,28 +28,17 @@ class ItmColumn {
 
   itm_detail::HorizonDistances findHorizons(ItmPath<float>& path) {
     const int last = profile_.intervals;
-    const double length_m = profile_.length_m();
     const float half_curvature = 1 / (2 * path.effective_earth_radius_m);
-    const float transmitter_m = profile_.heights_msl_m[0] + path.terminal[0].height_agl_m;
-    const float receiver_m = profile_.heights_msl_m[last] + path.terminal[1].height_agl_m;
+    const float* const ranges_m = range_m_;
     if (transmitter_.post < 0) {
-      transmitter_ =
-          steepest(transmitter_m, half_curvature, [ranges_m = range_m_](int i) { return ranges_m[i]; });
+      transmitter_ = steepest(profile_.heights_msl_m[0] + path.terminal[0].height_agl_m, half_curvature,
+                              [ranges_m](int i) { return ranges_m[i]; });
     }
-    const Horizon receiver = steepest(receiver_m, half_curvature,
-                                      [ranges_m = range_m_, last](int i) { return ranges_m[last - i]; });
-    const float slope = (receiver_m - transmitter_m) / static_cast<float>(length_m);
-    const float bulge = static_cast<float>(length_m) * half_curvature;
-    itm_detail::HorizonDistances horizons{{length_m, length_m}};
-    const auto set = [&](int end, float line, const Horizon& found, int away, float range_m) {
-      const bool is_higher = found.rise_m > line * range_m;
-      if (is_higher) horizons.distance_m[end] = away * profile_.step_m;
-      path.terminal[end].horizon_angle_rad = is_higher ? found.slope : line;
-      path.terminal[end].horizon_distance_m = static_cast<float>(horizons.distance_m[end]);
-    };
-    set(0, slope - bulge, transmitter_, transmitter_.post, range_m_[transmitter_.post]);
-    set(1, -slope - bulge, receiver, last - receiver.post, range_m_[last - receiver.post]);
-    return horizons;
+    const itm_detail::HorizonPost receiver =
+        steepest(profile_.heights_msl_m[last] + path.terminal[1].height_agl_m, half_curvature,
+                 [ranges_m, last](int i) { return ranges_m[last - i]; });
+    return itm_detail::setHorizons(profile_, path, transmitter_, ranges_m[transmitter_.post], receiver,
+                                   ranges_m[last - receiver.post]);
   }
 
   float irregularityBetween_m(double begin_m, double end_m) {
@@ -60,17 +49,14 @@ class ItmColumn {
     }
     return irregularity_m_;
   }
+  itm_detail::FittedLine<float> fitLine(double begin, double end) const {
+    return itm_detail::fitLine<float>(profile_.heights_msl_m, profile_.intervals, begin, end);
+  }
 
  private:
-  /// The post that is highest from an end, of several the first; and its height above the level there.
-  struct Horizon {
-    int post = -1;
-    float slope = 0, rise_m = 0;
-  };
-
   /// @param rangeOf  distance of a post from the end
   template <class RangeOf>
-  Horizon steepest(float from_m, float half_curvature, const RangeOf& rangeOf) const {
+  itm_detail::HorizonPost steepest(float from_m, float half_curvature, const RangeOf& rangeOf) const {
     const float* const heights_m = profile_.heights_msl_m;
     float* const slopes = slope_;
     const int last = profile_.intervals;
@@ -97,7 +83,7 @@ class ItmColumn {
   float* slope_;
   bool has_every_height_ = false;
   float mean_height_m_ = 0;
-  Horizon transmitter_;
+  itm_detail::HorizonPost transmitter_;
   double begin_m_ = NAN, end_m_ = NAN;
   float irregularity_m_ = 0;
 };

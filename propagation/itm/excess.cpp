@@ -19,7 +19,7 @@ bool isItmUnknown(const TerrainProfile& profile) {
 
 }  // namespace
 
-/// The same as the loop over single posts, in parts of which the intervals are found first: among the far
+/// Heights of a profile at equal distances, in parts of which the intervals are found first: among the far
 /// posts, which are equally far apart, from the spacing.
 inline void ItmExcess::spaceEvenlyInLanes(const TerrainProfile& profile, int intervals,
                                           float* heights_msl_m) {
@@ -83,15 +83,17 @@ EMSCAPE_SIMD_CLONES unsigned ItmExcess::operator()(const ExcessColumn& column, c
   spaceEvenlyInLanes(column.profile, evenIntervals(column.profile), scratch.even_ground_msl_m);
   const ItmProfile<float> even = evenProfile(column, scratch);
   ItmColumn statistics(even, scratch.post_numbers, scratch.post_numbers + scratch.posts);
-  const ColumnPart all{0, column.count, scratch.other_db};
-  const unsigned warnings = evaluate(column, even, statistics, all);
-  if (!is_alone) {
-    blend(column, all, excess_db);
-    return warnings;
-  }
-  if ((warnings & kItmRefused) != 0) diffraction(column, scratch, excess_db);
-  for (int k = 0; k < column.count; ++k) {
-    if (all.memory_db[k] == all.memory_db[k]) excess_db[k] = all.memory_db[k];
+  float* const itm_db = scratch.other_db;
+  int in_zone = 0;
+  while (in_zone < column.count && isInZone(column, in_zone)) ++in_zone;
+  const unsigned warnings = evaluate(column, in_zone, even, statistics, itm_db);
+  if (is_alone) {
+    if ((warnings & kItmRefused) != 0) diffraction(column, scratch, excess_db);
+    for (int k = 0; k < column.count; ++k) {
+      if (itm_db[k] == itm_db[k]) excess_db[k] = itm_db[k];
+    }
+  } else {
+    for (int k = 0; k < in_zone; ++k) excess_db[k] = blended(column, k, path_weight, itm_db[k], excess_db[k]);
   }
   return warnings;
 }

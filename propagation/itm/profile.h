@@ -16,8 +16,12 @@ namespace emscape::propagation {
 /// A product with separate rounding. If a compiler fused it with an addition, other posts than in the
 /// reference might be selected, which changes the loss by a tenth of a dB.
 EMSCAPE_HD inline double itmProduct(double a, double b) {
+#if defined(__CUDA_ARCH__)
+  return __dmul_rn(a, b);
+#else
   volatile double product = a * b;
   return product;
+#endif
 }
 
 /// Evenly spaced terrain heights from one end of a path to the other.
@@ -85,24 +89,41 @@ struct FittedLine {
   Real at_end_m = 0;
 };
 
-/// Least squares over the posts within begin..end (in posts), the two outermost with half weight.
-template <class Real, class Height>
-EMSCAPE_HD FittedLine<Real> fitLine(const Height* heights_m, int intervals, double begin, double end) {
-  int first = begin > 0 ? static_cast<int>(begin) : 0;
-  int last = intervals - (end < intervals ? static_cast<int>(intervals - end) : 0);
-  if (last <= first) {
+/// Posts within begin..end (in posts), at least two intervals apart where there are as many.
+struct PostRange {
+  int first, last;
+
+  EMSCAPE_HD PostRange(int intervals, double begin, double end)
+      : first(begin > 0 ? static_cast<int>(begin) : 0),
+        last(intervals - (end < intervals ? static_cast<int>(intervals - end) : 0)) {
+    if (last > first) return;
     first = first > 1 ? first - 1 : 0;
     last = last + 1 < intervals ? last + 1 : intervals;
   }
-  const Real length = Real(last - first);
-  const Real half = length / 2;
-  const Real center = first + half;
-  const Real base_m = heights_m[first];
-  const HeightSums<Real> sums = sumHeights(heights_m, first, last, base_m, center);
-  const Real last_m = Real(heights_m[last]) - base_m;  // the first one is 0
+  template <class Real>
+  EMSCAPE_HD Real center() const {
+    return first + Real(last - first) / 2;
+  }
+};
+
+/// The line of least squares over such posts, the two outermost with half weight.
+/// @param sums    of the posts, above the first one, about PostRange::center()
+/// @param last_m  height of the last one above the first one
+template <class Real>
+EMSCAPE_HD FittedLine<Real> lineOf(const PostRange& posts, int intervals, Real base_m,
+                                   const HeightSums<Real>& sums, Real last_m) {
+  const Real length = Real(posts.last - posts.first), half = length / 2, center = posts.center<Real>();
   const Real mean_m = base_m + (sums.plain - last_m / 2) / length;
   const Real slope_m = (sums.weighted - half * last_m / 2) * 12 / ((length * length + 2) * length);
   return {mean_m - slope_m * center, mean_m + slope_m * (Real(intervals) - center)};
+}
+template <class Real, class Height>
+EMSCAPE_HD FittedLine<Real> fitLine(const Height* heights_m, int intervals, double begin, double end) {
+  const PostRange posts(intervals, begin, end);
+  const Real base_m = heights_m[posts.first];
+  return lineOf<Real>(posts, intervals, base_m,
+                      sumHeights(heights_m, posts.first, posts.last, base_m, posts.center<Real>()),
+                      Real(heights_m[posts.last]) - base_m);
 }
 
 template <class Height>
@@ -165,6 +186,35 @@ EMSCAPE_HD HorizonDistances findHorizons(const ItmProfile<Height>& profile, ItmP
     path.terminal[end].horizon_angle_rad = angle_rad[end];
     path.terminal[end].horizon_distance_m = Real(horizons.distance_m[end]);
   }
+  return horizons;
+}
+
+/// The post that is highest from an end, of several the first; and its height above the level there.
+struct HorizonPost {
+  int post = -1;
+  float slope = 0, rise_m = 0;
+};
+/// Sets the horizons of both terminals from these posts.
+/// @param forth_m, back_m  ranges of the posts, of the transmitter's from it and of the receiver's from it
+EMSCAPE_HD inline HorizonDistances setHorizons(const ItmProfile<float>& profile, ItmPath<float>& path,
+                                               const HorizonPost& of_transmitter, float forth_m,
+                                               const HorizonPost& of_receiver, float back_m) {
+  const int last = profile.intervals;
+  const double length_m = profile.length_m();
+  const float half_curvature = 1 / (2 * path.effective_earth_radius_m);
+  const float transmitter_m = profile.heights_msl_m[0] + path.terminal[0].height_agl_m;
+  const float receiver_m = profile.heights_msl_m[last] + path.terminal[1].height_agl_m;
+  const float slope = (receiver_m - transmitter_m) / static_cast<float>(length_m);
+  const float bulge = static_cast<float>(length_m) * half_curvature;
+  HorizonDistances horizons{{length_m, length_m}};
+  const auto set = [&](int end, float line, const HorizonPost& found, int away, float range_m) {
+    const bool is_higher = found.rise_m > line * range_m;
+    if (is_higher) horizons.distance_m[end] = away * profile.step_m;
+    path.terminal[end].horizon_angle_rad = is_higher ? found.slope : line;
+    path.terminal[end].horizon_distance_m = static_cast<float>(horizons.distance_m[end]);
+  };
+  set(0, slope - bulge, of_transmitter, of_transmitter.post, forth_m);
+  set(1, -slope - bulge, of_receiver, last - of_receiver.post, back_m);
   return horizons;
 }
 
@@ -236,51 +286,76 @@ EMSCAPE_HD Real interdecileRange(const Real* values, int count, int tenth) {
   return valueAtRank(high_values, high_count, high_rank) - valueAtRank(low_values, low_count, low_rank);
 }
 
-/// Delta h: interdecile range of the terrain's heights between two distances, above the line fitted to them,
-/// scaled to that of a path of any length [Alg 3.9].
+/// Heights of a profile at equal distances, between two of its posts by a line. Positions are in posts, in
+/// fixed point: 32 bits for the fraction.
+template <class Real, class Height>
+class SampledProfile {
+ public:
+  static constexpr int kMostSamples = 10 * 25 - 5;
+
+  /// @param begin, end  in posts, at least 2 apart
+  EMSCAPE_HD SampledProfile(const ItmProfile<Height>& profile, double begin, double end)
+      : heights_msl_m_(profile.heights_msl_m), last_interval_(profile.intervals - 1) {
+    tenth_ = static_cast<int>(0.1 * (end - begin + 8));
+    tenth_ = tenth_ < 4 ? 4 : tenth_ > 25 ? 25 : tenth_;
+    spacing_ = static_cast<long long>((end - begin) / (count() - 1) * kOne);
+    first_ = static_cast<long long>(begin * kOne);
+  }
+  EMSCAPE_HD int tenth() const { return tenth_; }  ///< a tenth of the samples
+  EMSCAPE_HD int count() const { return 10 * tenth_ - 5; }
+  /// Of any but the last one.
+  EMSCAPE_HD Real at(int i) const {
+    const long long at = first_ + i * spacing_;
+    return between(static_cast<int>(at >> 32), Real(static_cast<unsigned>(at)));
+  }
+  EMSCAPE_HD Real last() const {
+    const long long at = first_ + (count() - 1) * spacing_;
+    const int post = static_cast<int>(at >> 32), before = post < last_interval_ ? post : last_interval_;
+    return between(before, Real(at - (static_cast<long long>(before) << 32)));
+  }
+
+ private:
+  static constexpr double kOne = 4294967296.0;
+
+  EMSCAPE_HD Real between(int post, Real fraction) const {
+    const Real here_m = heights_msl_m_[post];
+    return here_m + (Real(heights_msl_m_[post + 1]) - here_m) * (fraction * Real(1 / kOne));
+  }
+
+  const Height* heights_msl_m_;
+  int last_interval_, tenth_;
+  long long first_, spacing_;
+};
+
+/// Delta h of an interdecile range of the terrain's heights between two distances, above the line fitted to
+/// them: scaled to that of a path of any length [Alg 3.9].
+template <class Real>
+EMSCAPE_HD Real irregularityOf_m(Real range_m, double begin_m, double end_m) {
+  return range_m / (1 - Real(0.8) * Real(std::exp(-(end_m - begin_m) / 50e3)));
+}
 template <class Real, class Height>
 EMSCAPE_HD Real irregularityBetween_m(const ItmProfile<Height>& profile, double begin_m, double end_m) {
-  const double begin = begin_m / profile.step_m;
-  const double end = end_m / profile.step_m;
+  const double begin = begin_m / profile.step_m, end = end_m / profile.step_m;
   if (!(end - begin >= 2)) return 0;
-  int tenth = static_cast<int>(0.1 * (end - begin + 8));
-  tenth = tenth < 4 ? 4 : tenth > 25 ? 25 : tenth;
-  const int samples = 10 * tenth - 5;
-  constexpr int kMaxSamples = 10 * 25 - 5;
-
+  const SampledProfile<Real, Height> sampled(profile, begin, end);
+  constexpr int kMaxSamples = SampledProfile<Real, Height>::kMostSamples;
+  const int samples = sampled.count();
   Real above_m[kMaxSamples];
-  // positions in posts, in fixed point: 32 bits for the fraction
-  constexpr double kOne = 4294967296.0;
-  const auto spacing = static_cast<long long>((end - begin) / (samples - 1) * kOne);
-  const auto first = static_cast<long long>(begin * kOne);
-  const auto heightAt = [&](int post, Real fraction) {
-    const Real here_m = profile.heights_msl_m[post];
-    return here_m + (Real(profile.heights_msl_m[post + 1]) - here_m) * (fraction * Real(1 / kOne));
-  };
   EMSCAPE_SIMD()
-  for (int i = 0; i < samples - 1; ++i) {
-    const long long at = first + i * spacing;
-    above_m[i] = heightAt(static_cast<int>(at >> 32), Real(static_cast<unsigned>(at)));
-  }
-  const long long at_end = first + (samples - 1) * spacing;
-  const int post = static_cast<int>(at_end >> 32), last_interval = profile.intervals - 1;
-  const int of_end = post < last_interval ? post : last_interval;
-  above_m[samples - 1] = heightAt(of_end, Real(at_end - (static_cast<long long>(of_end) << 32)));
+  for (int i = 0; i < samples - 1; ++i) above_m[i] = sampled.at(i);
+  above_m[samples - 1] = sampled.last();
   const FittedLine<Real> line = fitLine<Real>(above_m, samples - 1, 0, samples - 1);
   const Real slope_m = (line.at_end_m - line.at_start_m) / (samples - 1);
   for (int i = 0; i < samples; ++i) above_m[i] -= line.at_start_m + slope_m * i;
-
-  const Real range_m = interdecileRange<kMaxSamples>(above_m, samples, tenth);
-  return range_m / (1 - Real(0.8) * Real(std::exp(-(end_m - begin_m) / 50e3)));
+  return irregularityOf_m(interdecileRange<kMaxSamples>(above_m, samples, sampled.tenth()), begin_m, end_m);
 }
 
 /// Effective heights if the terminals are in line of sight; their horizons are then estimated from the
 /// irregularity.
-template <class Real, class Height>
-EMSCAPE_HD void setLineOfSight(const ItmProfile<Height>& profile, double begin_m, double end_m,
-                               ItmPath<Real>& path) {
-  const FittedLine<Real> line = fitLine<Real>(profile.heights_msl_m, profile.intervals,
-                                              begin_m / profile.step_m, end_m / profile.step_m);
+template <class Real, class Height, class Statistics>
+EMSCAPE_HD void setLineOfSight(const ItmProfile<Height>& profile, const Statistics& statistics,
+                               double begin_m, double end_m, ItmPath<Real>& path) {
+  const FittedLine<Real> line = statistics.fitLine(begin_m / profile.step_m, end_m / profile.step_m);
   const Real above_m[2] = {larger(Real(0), Real(profile.heights_msl_m[0]) - line.at_start_m),
                            larger(Real(0), Real(profile.heights_msl_m[profile.intervals]) - line.at_end_m)};
   const auto estimateHorizons = [&path] {
@@ -301,16 +376,16 @@ EMSCAPE_HD void setLineOfSight(const ItmProfile<Height>& profile, double begin_m
 }
 
 /// Effective heights if each terminal has its own horizon.
-template <class Real, class Height>
-EMSCAPE_HD void setBeyondHorizon(const ItmProfile<Height>& profile, double begin_m, double end_m,
-                                 const HorizonDistances& horizons, ItmPath<Real>& path) {
+template <class Real, class Height, class Statistics>
+EMSCAPE_HD void setBeyondHorizon(const ItmProfile<Height>& profile, const Statistics& statistics,
+                                 double begin_m, double end_m, const HorizonDistances& horizons,
+                                 ItmPath<Real>& path) {
   const double step_m = profile.step_m;
-  const Real at_start_m = fitLine<Real>(profile.heights_msl_m, profile.intervals, begin_m / step_m,
-                                        itmProduct(0.9, horizons.distance_m[0]) / step_m)
-                              .at_start_m;
+  const Real at_start_m =
+      statistics.fitLine(begin_m / step_m, itmProduct(0.9, horizons.distance_m[0]) / step_m).at_start_m;
   const Real at_end_m =
-      fitLine<Real>(profile.heights_msl_m, profile.intervals,
-                    (profile.length_m() - itmProduct(0.9, horizons.distance_m[1])) / step_m, end_m / step_m)
+      statistics
+          .fitLine((profile.length_m() - itmProduct(0.9, horizons.distance_m[1])) / step_m, end_m / step_m)
           .at_end_m;
   path.terminal[0].effective_height_m =
       path.terminal[0].height_agl_m + larger(Real(0), Real(profile.heights_msl_m[0]) - at_start_m);
@@ -331,6 +406,9 @@ struct ProfileStatistics {
   }
   EMSCAPE_HD Real irregularityBetween_m(double begin_m, double end_m) const {
     return itm_detail::irregularityBetween_m<Real>(profile, begin_m, end_m);
+  }
+  EMSCAPE_HD FittedLine<Real> fitLine(double begin, double end) const {
+    return itm_detail::fitLine<Real>(profile.heights_msl_m, profile.intervals, begin, end);
   }
 };
 
@@ -357,9 +435,9 @@ EMSCAPE_HD void itmSetTerrain(ItmPath<Real>& path, const ItmProfile<Height>& pro
   const double end_m = profile.length_m() - foreground_m(1);
   path.irregularity_m = statistics.irregularityBetween_m(begin_m, end_m);
   if (horizons.distance_m[0] + horizons.distance_m[1] > 1.5 * profile.length_m()) {
-    setLineOfSight(profile, begin_m, end_m, path);
+    setLineOfSight(profile, statistics, begin_m, end_m, path);
   } else {
-    setBeyondHorizon(profile, begin_m, end_m, horizons, path);
+    setBeyondHorizon(profile, statistics, begin_m, end_m, horizons, path);
   }
 }
 

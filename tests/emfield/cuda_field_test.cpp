@@ -301,6 +301,28 @@ scenario::TerrainPtr gentleHills(bool has_hole) {
       });
 }
 
+// A warp a column on the GPU; area mode, few and many heights, and columns that lean.
+TEST_P(CudaField, ItmNearTheGroundEqualsCpu) {
+  std::mt19937 random(21);
+  const auto hills = gentleHills(false);
+  for (const auto& [frame, layers, height_m] : {std::tuple{FrameKind::altitude, 29, 350.0},
+                                                {FrameKind::altitude, 70, 320.0},
+                                                {FrameKind::enu, 5, 400.0}}) {
+    const auto scenario = randomScenario(random, frame, {PropagationModel::itm}, height_m, 3);
+    scenario->region.size_m = {40e3, 36e3, layers > 30 ? 2500.0 : 5000.0};
+    scenario->region.dims.z = layers;
+    for (scenario::Emitter& emitter : scenario->emitters) {
+      emitter.antenna = scenario::makeIsotropic();
+      emitter.frequency_hz = std::max(emitter.frequency_hz, 1e8);
+    }
+    scenario->emitters[2].propagation.itm.form = propagation::ItmForm::area;
+    FieldOptions options;
+    options.allow_missing_terrain = true;
+    Pair pair(scenario, hills, options);
+    expectSameField(pair, random, 2);
+  }
+}
+
 /// Two emitters of the parabolic equation 50 m above the hills' tops, over a region 24 km wide.
 std::shared_ptr<scenario::Scenario> marchedScenario(propagation::Polarization polarization) {
   auto scenario =

@@ -65,8 +65,6 @@ class Columns {
         [](const auto& model, const ExcessColumn& column, const ExcessScratch& scratch, float* losses) {
           unsigned all = 0;
           if constexpr (std::decay_t<decltype(model)>::kInParts) {
-            if constexpr (std::is_same_v<std::decay_t<decltype(model)>, propagation::ItmExcess>)
-              all |= model.diffraction(column, scratch, losses);  // on a device by its own kernel
             all |= model.begin(column, scratch, losses);
             float memory_db[kBisectionStep + 1];
             for (int end = column.count; end > 0;) {
@@ -165,13 +163,13 @@ TEST(ExcessModels, HeightsBetweenEvaluationsOfP1812AndP452AreWithinATenthOfADeci
   }
 }
 
-// Whole columns of itm, p1812 and p452 are computed by vector instructions, parts post by post.
+// Whole columns of p1812 and p452 are computed by vector instructions, parts post by post.
 TEST(ExcessModels, ColumnInPartsEqualsWholeColumn) {
   std::mt19937 random(12);
   const auto scenario = whiteMountains(4e8, 15);
   scenario::Emitter& emitter = scenario->emitters[0];
-  for (const auto propagation : {PropagationModel::diffraction, PropagationModel::itm,
-                                 PropagationModel::p1812, PropagationModel::p452}) {
+  for (const auto propagation :
+       {PropagationModel::diffraction, PropagationModel::p1812, PropagationModel::p452}) {
     emitter.propagation.model = propagation;
     emitter.propagation.diffraction.method = propagation::DiffractionMethod::deygout;
     for (int p = 0; p < 20; ++p) {
