@@ -83,7 +83,7 @@ class WarpStatistics {
         end - begin >= 2 ? irregularityOf_m(interdecileRange_m({profile_, begin, end}), begin_m, end_m) : 0;
     return irregularity_m_;
   }
-  __device__ FittedLine<float> fitLine(double begin, double end) const {
+  __device__ __noinline__ FittedLine<float> fitLine(double begin, double end) const {
     const PostRange posts(profile_.intervals, begin, end);
     const float base_m = profile_.heights_msl_m[posts.first];
     return lineOf(posts, profile_.intervals, base_m,
@@ -104,7 +104,7 @@ class WarpStatistics {
     }
     return {sumOfLanes(of_lane.plain), sumOfLanes(of_lane.weighted)};
   }
-  __device__ HorizonPost steepest(float from_m, float half_curvature, bool from_receiver) const {
+  __device__ __noinline__ HorizonPost steepest(float from_m, float half_curvature, bool from_receiver) const {
     const int last = profile_.intervals;
     HorizonPost found{last, -HUGE_VALF, 0};
     for (int i = 1 + lane_; i < last; i += kWarp) {
@@ -271,13 +271,15 @@ __device__ void spaceEvenly(const propagation::TerrainProfile& profile, int inte
 }
 
 /// The excess of ITM alone at a column's lowest heights.
+/// @tparam kArea  area mode
+template <bool kArea>
 class ItmHeights {
  public:
   __device__ ItmHeights(const ItmExcess& model, const propagation::ExcessColumn& column,
                         const ItmProfile<float>& even, float* itm_db)
       : model_(model), column_(column), even_(even), statistics_(even), itm_db_(itm_db) {
     const auto& link = model.link;
-    if (model.is_area || !statistics_.hasEveryHeight()) return;
+    if (kArea || !statistics_.hasEveryHeight()) return;
     itmSetMedium(medium_, link.frequency_hz, link.vertical_polarization, link.relative_permittivity,
                  link.conductivity_s_m, link.sea_level_refractivity, statistics_.meanHeight_m());
   }
@@ -289,24 +291,30 @@ class ItmHeights {
     const float tolerance_db = column_.tolerance_db(ItmExcess::kTolerance_db);
     const auto endOf = [=](int n) { return min(n * kBisectionStep, count - 1); };
     const int ends = (count + kBisectionStep - 2) / kBisectionStep + 1;
-    evaluate(ends, endOf);
-    unsigned *open = intervals, *next = intervals + count / 2;  // the ends of each in 16 bits
+    unsigned *open = intervals, *next = intervals + count / 2;
     int open_count = 0;
     const auto push = [lane](unsigned* to, int& size, bool has, int from, int end) {
       const unsigned lanes = __ballot_sync(kAll, has);
       if (has) to[size + __popc(lanes & ((1u << lane) - 1))] = static_cast<unsigned>(from) << 16 | end;
       size += __popc(lanes);
     };
-    for (int n = lane; n - lane < ends - 1; n += kWarp) {
-      const int from = endOf(n), end = endOf(n + 1);
-      push(open, open_count, n < ends - 1 && end - from >= 2, from, end);
+    // At first all ends with the middles between them, which are always needed.
+    for (int n = lane; n - lane < ends; n += kWarp) {
+      const int from = endOf(n), end = endOf(n + 1), middle = (from + end) / 2;
+      push(open, open_count, n < ends, from, from);
+      push(open, open_count, n < ends && middle > from, middle, middle);
     }
-    __syncwarp();
-    while (open_count > 0) {
-      const auto middleOf = [=](int n) {
-        return static_cast<int>((open[n] >> 16) + (open[n] & 0xffffu)) / 2;
-      };
-      evaluate(open_count, middleOf);
+    for (bool is_first = true; open_count > 0; is_first = false) {
+      __syncwarp();
+      evaluate(open_count, open);
+      if (is_first) {
+        open_count = 0;
+        for (int n = lane; n - lane < ends - 1; n += kWarp) {
+          const int from = endOf(n), end = endOf(n + 1);
+          push(open, open_count, n < ends - 1 && end - from >= 2, from, end);
+        }
+        __syncwarp();
+      }
       int next_count = 0;
       for (int n = lane; n - lane < open_count; n += kWarp) {
         const bool is_interval = n < open_count;
@@ -320,7 +328,6 @@ class ItmHeights {
         push(next, next_count, !is_done && middle - from >= 2, from, middle);
         push(next, next_count, !is_done && end - middle >= 2, middle, end);
       }
-      __syncwarp();
       unsigned* const done = open;
       open = next;
       next = done;
@@ -330,28 +337,28 @@ class ItmHeights {
   }
 
  private:
-  /// @param heightOf  index of the n-th height
-  template <class HeightOf>
-  __device__ void evaluate(int count, const HeightOf& heightOf) {
+  /// @param intervals  from and to in 16 bits each, of whose middles
+  __device__ void evaluate(int count, const unsigned* intervals) {
     const int lane = laneOf();
+    const auto heightOf = [=](int n) {
+      return static_cast<int>((intervals[n] >> 16) + (intervals[n] & 0xffffu)) / 2;
+    };
+    const auto linkTo = [&](int n) {
+      return model_.linkTo(column_, ItmExcess::heightAgl(column_, heightOf(n)));
+    };
     for (int first = 0; first < count; first += kWarp) {
-      const int here = min(kWarp, count - first);
       ItmPath<float> path;
-      const auto linkTo = [&](int n) {
-        return model_.linkTo(column_, ItmExcess::heightAgl(column_, heightOf(first + n)));
-      };
-      if (!model_.is_area && statistics_.hasEveryHeight()) {
+      const int end = kArea || !statistics_.hasEveryHeight() ? first : min(first + kWarp, count);
 #pragma unroll 1
-        for (int n = 0; n < here; ++n) {
-          const auto link = linkTo(n);
-          ItmPath<float> of_height = medium_;
-          for (int end = 0; end < 2; ++end) of_height.terminal[end].height_agl_m = link.height_agl_m[end];
-          itmSetTerrain(of_height, even_, statistics_);
-          if (lane == n) path = of_height;
-        }
+      for (int n = first; n < end; ++n) {
+        const auto link = linkTo(n);
+        ItmPath<float> of_height = medium_;
+        for (int side = 0; side < 2; ++side) of_height.terminal[side].height_agl_m = link.height_agl_m[side];
+        itmSetTerrain(of_height, even_, statistics_);
+        if (lane == n - first) path = of_height;
       }
-      if (lane < here) {
-        const ItmResult<float> result = resultOf(linkTo(lane), path);
+      if (first + lane < count) {
+        const ItmResult<float> result = resultOf(linkTo(first + lane), path);
         warnings_ |= result.refused() ? kItmRefused : result.warnings;
         itm_db_[heightOf(first + lane)] = result.loss_db - result.free_space_db;
       }
@@ -360,15 +367,18 @@ class ItmHeights {
   }
   __device__ ItmResult<float> resultOf(const propagation::ItmLink<float>& link,
                                        const ItmPath<float>& path) const {
-    if (model_.is_area) return itmAreaMode(model_.areaTo(column_), link, model_.quantiles);
-    ItmResult<float> result;
-    const ItmStatus status = checkInput(link, model_.quantiles, result.warnings);
-    if (status != ItmStatus::done) return refuse(result, status);
-    if (!(even_.intervals >= 2 && even_.step_m > 0) || !statistics_.hasEveryHeight())
-      return refuse(result, ItmStatus::profile);
-    result.path = path;
-    finish(link, model_.quantiles, result);
-    return result;
+    if constexpr (kArea) {
+      return itmAreaMode(model_.areaTo(column_), link, model_.quantiles);
+    } else {
+      ItmResult<float> result;
+      const ItmStatus status = checkInput(link, model_.quantiles, result.warnings);
+      if (status != ItmStatus::done) return refuse(result, status);
+      if (!(even_.intervals >= 2 && even_.step_m > 0) || !statistics_.hasEveryHeight())
+        return refuse(result, ItmStatus::profile);
+      result.path = path;
+      finish(link, model_.quantiles, result);
+      return result;
+    }
   }
 
   const ItmExcess& model_;
@@ -380,6 +390,7 @@ class ItmHeights {
   unsigned warnings_ = 0;
 };
 
+template <bool kArea>
 __device__ void fillSegment(const ExcessTask<ItmExcess>& task, const ExcessOutputs& to, std::size_t c,
                             int segment, const ExcessScratch& scratch) {
   const int lane = laneOf();
@@ -405,7 +416,7 @@ __device__ void fillSegment(const ExcessTask<ItmExcess>& task, const ExcessOutpu
   if (in_zone > 0) {
     const ItmProfile<float> even = model.evenProfile(column, scratch);
     spaceEvenly(column.profile, even.intervals, scratch.even_ground_msl_m);
-    ItmHeights heights(model, column, even, scratch.other_db);
+    ItmHeights<kArea> heights(model, column, even, scratch.other_db);
     const unsigned warnings = heights.fill(in_zone, reinterpret_cast<unsigned*>(scratch.excess_db));
     note(to, static_cast<int>(c), warnings);
     __syncwarp();
@@ -421,6 +432,7 @@ __device__ void fillSegment(const ExcessTask<ItmExcess>& task, const ExcessOutpu
   __syncwarp();
 }
 
+template <bool kArea>
 __global__ void __launch_bounds__(kColumnThreads)
     itmKernel(const __grid_constant__ ExcessTask<ItmExcess> task, const __grid_constant__ ExcessOutputs to,
               const __grid_constant__ WarpMemory memory) {
@@ -429,7 +441,8 @@ __global__ void __launch_bounds__(kColumnThreads)
   const ExcessScratch scratch = memory.of(warp);
   const auto columns = static_cast<long long>(task.grid.column_count);
   for (long long n = warp; n < columns * task.grid.segments; n += warps)
-    fillSegment(task, to, static_cast<std::size_t>(n % columns), static_cast<int>(n / columns), scratch);
+    fillSegment<kArea>(task, to, static_cast<std::size_t>(n % columns), static_cast<int>(n / columns),
+                       scratch);
 }
 
 }  // namespace
@@ -441,7 +454,8 @@ void fillItm(const ExcessTask<ItmExcess>& task, const ExcessOutputs& to, const S
   const long long columns = static_cast<long long>(task.grid.column_count) * task.grid.segments;
   const auto blocks =
       static_cast<unsigned>(std::min<long long>(memory.blocks(), (columns + kWarps - 1) / kWarps));
-  itmKernel<<<blocks, kColumnThreads, 0, stream>>>(task, to, memory);
+  const auto kernel = task.model.is_area ? itmKernel<true> : itmKernel<false>;
+  kernel<<<blocks, kColumnThreads, 0, stream>>>(task, to, memory);
   emscape::cuda::checkLaunch("itm");
 }
 

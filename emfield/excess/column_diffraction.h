@@ -171,8 +171,13 @@ class Receivers {
   template <int kReceivers>
   EMSCAPE_HD bool survey(float lowest_m, float highest_m, const float* rx_m, Maxima* most) {
     has_earth_ = !isClearThroughout(task_.model.model.earth, distance_m_, tx_m_, lowest_m - ground_m_);
+    if (has_earth_ && !task_.model.model.sea_by_height) {
+      constexpr float kOff_m = 2;  // at most, of the line through some posts
+      fitTrend(false);
+      has_earth_ = isInEarth(lowest_m, kOff_m);
+    }
     if (has_earth_) {
-      fitTrend();
+      fitTrend(true);
       has_earth_ = isInEarth(lowest_m);
     }
     const float slope = slopeTo(lowest_m);
@@ -254,10 +259,9 @@ class Receivers {
     }
   };
 
-  /// The line fitted to the terrain, from every second regular post, which are at the spacing of the
-  /// elevation model, and of long paths from some hundred: over hills a loss is at most a few thousandths of
-  /// a decibel off. With the share of the sea from all posts.
-  EMSCAPE_NOINLINE EMSCAPE_HD void fitTrend() {
+  /// The line fitted to the terrain, from all posts, with the share of the sea; or from every second regular
+  /// post, which are at the spacing of the elevation model, and of long paths from some hundred.
+  EMSCAPE_NOINLINE EMSCAPE_HD void fitTrend(bool to_all) {
     float v1 = 0, v2 = 0;  // as propagation::TerrainSums
     float sea_m = 0, before_m = 0, before_height_m = 0;
     bool was_sea = base_msl_m_ <= 0;
@@ -275,7 +279,7 @@ class Receivers {
       before_height_m = height_m;
       was_sea = is_sea;
     };
-    if (task_.model.model.sea_by_height) {  // the share of the sea is that of all posts
+    if (to_all) {
       while (!posts_.each([](float, float, float) { return false; }, add)) {
         v1 = v2 = sea_m = before_m = before_height_m = 0;
         was_sea = base_msl_m_ <= 0;
@@ -384,10 +388,12 @@ class Receivers {
     return propagation::clearTrend(trend_start_m_, trend_end_m_, ground_m_);
   }
   /// False if the smooth earth has no loss for a receiver and those above; see LaneColumn.
-  EMSCAPE_HD bool isInEarth(float rx_m) const {
+  /// @param off_m  that the line may be off
+  EMSCAPE_HD bool isInEarth(float rx_m, float off_m = 0) const {
     if (!has_earth_) return false;
     const EffectiveHeights<float> least = effectiveHeights(trend(), tx_m_, rx_m);
-    return !isClearThroughout(task_.model.model.earth, distance_m_, least.tx_m, least.rx_m);
+    return !isClearThroughout(task_.model.model.earth, distance_m_, fmaxf(least.tx_m - off_m, 0),
+                              fmaxf(least.rx_m - off_m, 0));
   }
   /// Smooth-earth correction (dB): the spherical earth's loss minus Bullington's, at least 0.
   EMSCAPE_HD float earthCorrectionDb(float rx_m, const Maxima& most) const {

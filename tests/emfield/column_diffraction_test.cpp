@@ -100,7 +100,7 @@ void expectSameLosses(const SeenField& setup, const std::vector<float>& device, 
     if (!setup.isCounted(column, static_cast<int>(voxel / setup.columns.count()))) continue;
     ASSERT_EQ(std::isnan(device[voxel]), std::isnan(cpu[voxel])) << voxel;
     lossy += cpu[voxel] > 0;
-    different += std::abs(device[voxel] - cpu[voxel]) > 0.02f;
+    different += std::abs(device[voxel] - cpu[voxel]) > 0.005f;
   }
   EXPECT_GT(lossy, 50);
   EXPECT_LE(different, edge_losses);
