@@ -39,15 +39,6 @@ __device__ float ofAllLanes(float value, const Combine& combine) {
 __device__ float sumOfLanes(float value) {
   return ofAllLanes(value, [](float a, float b) { return a + b; });
 }
-/// Unsigned integers in the order of floats.
-__device__ unsigned orderOf(float value) {
-  const unsigned bits = __float_as_uint(value);
-  return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
-}
-__device__ float ofOrder(unsigned order) {
-  return __uint_as_float((order & 0x80000000u) != 0 ? order & 0x7fffffffu : ~order);
-}
-
 /// As itm_detail::ProfileStatistics, by all lanes of a warp.
 class WarpStatistics {
  public:
@@ -145,28 +136,42 @@ class WarpStatistics {
         lineOf(posts, last, base_m, {sumOfLanes(of_lane.plain), sumOfLanes(of_lane.weighted)},
                __shfl_sync(kAll, last_m, last % kWarp) - base_m);
     const float slope_m = (line.at_end_m - line.at_start_m) / static_cast<float>(last);
-    unsigned orders[kOfLane];
+    float least_m = HUGE_VALF, most_m = -HUGE_VALF;
 #pragma unroll
     for (int n = 0; n < kOfLane; ++n) {
       const int i = n * kWarp + lane_;
-      orders[n] = i > last ? ~0u : orderOf(above_m[n] - (line.at_start_m + slope_m * static_cast<float>(i)));
+      above_m[n] -= line.at_start_m + slope_m * static_cast<float>(i);
+      least_m = i > last ? least_m : fminf(least_m, above_m[n]);
+      most_m = i > last ? most_m : fmaxf(most_m, above_m[n]);
     }
+    least_m = ofAllLanes(least_m, [](float a, float b) { return fminf(a, b); });
+    most_m = ofAllLanes(most_m, [](float a, float b) { return fmaxf(a, b); });
+    constexpr float kFlat_m = 1e-6f;
+    if (!(most_m - least_m > kFlat_m)) return 0;
+    constexpr int kBits = 16;  // a step of millimetres
+    const float steps_per_m = ((1 << kBits) - 1) / (most_m - least_m);
+    unsigned steps[kOfLane];
+#pragma unroll
+    for (int n = 0; n < kOfLane; ++n)
+      steps[n] = n * kWarp + lane_ > last
+                     ? ~0u
+                     : static_cast<unsigned>(__float2int_rn((above_m[n] - least_m) * steps_per_m));
     // The largest numbers below which there are at most as many samples as the rank, bit by bit.
     const unsigned low_rank = sampled.tenth() - 1, high_rank = count - sampled.tenth();
     unsigned low = 0, high = 0;
 #pragma unroll 1
-    for (unsigned bit = 1u << 31; bit != 0; bit >>= 1) {
+    for (unsigned bit = 1u << (kBits - 1); bit != 0; bit >>= 1) {
       unsigned below_low = 0, below_high = 0;
 #pragma unroll
       for (int n = 0; n < kOfLane; ++n) {
-        below_low += orders[n] < (low | bit) ? 1 : 0;
-        below_high += orders[n] < (high | bit) ? 1 : 0;
+        below_low += steps[n] < (low | bit) ? 1 : 0;
+        below_high += steps[n] < (high | bit) ? 1 : 0;
       }
       const unsigned below = __reduce_add_sync(kAll, below_low | below_high << 16);
       if ((below & 0xffffu) <= low_rank) low |= bit;
       if (below >> 16 <= high_rank) high |= bit;
     }
-    return ofOrder(high) - ofOrder(low);
+    return static_cast<float>(high - low) / steps_per_m;
   }
 
   const ItmProfile<float> profile_;

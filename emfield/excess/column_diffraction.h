@@ -171,19 +171,16 @@ class Receivers {
   template <int kReceivers>
   EMSCAPE_HD bool survey(float lowest_m, float highest_m, const float* rx_m, Maxima* most) {
     has_earth_ = !isClearThroughout(task_.model.model.earth, distance_m_, tx_m_, lowest_m - ground_m_);
-    if (has_earth_ && !task_.model.model.sea_by_height) {
-      constexpr float kOff_m = 2;  // at most, of the line through some posts
-      fitTrend(false);
-      has_earth_ = isInEarth(lowest_m, kOff_m);
-    }
     if (has_earth_) {
-      fitTrend(true);
-      has_earth_ = isInEarth(lowest_m);
+      constexpr float kOff_m = 2;  // at most, of the line through some posts
+      fitToSome();
+      has_earth_ = isInEarth(lowest_m, kOff_m);
     }
     const float slope = slopeTo(lowest_m);
     const bool for_any = isForAnyLane(has_earth_);  // one loop for all threads
     const bool is_known =
         for_any ? pass<kReceivers, true>(rx_m, slope, most) : pass<kReceivers, false>(rx_m, slope, most);
+    has_earth_ = isInEarth(lowest_m);
     if (kReceivers == 0 && candidates_.areComplete()) {
       const float clear_m = fmaf(clear_slope_, distance_m_, tx_m_);
       const float end_slope = isInEarth(clear_m) ? slopeTo(highest_m) : clear_slope_;
@@ -259,16 +256,17 @@ class Receivers {
     }
   };
 
-  /// The line fitted to the terrain, from all posts, with the share of the sea; or from every second regular
-  /// post, which are at the spacing of the elevation model, and of long paths from some hundred.
-  EMSCAPE_NOINLINE EMSCAPE_HD void fitTrend(bool to_all) {
-    float v1 = 0, v2 = 0;  // as propagation::TerrainSums
+  /// Sums over the posts of a path for the line fitted to the terrain and the share of the sea.
+  struct TrendSums {
+    float base_msl_m, v1 = 0, v2 = 0;  ///< as propagation::TerrainSums
     float sea_m = 0, before_m = 0, before_height_m = 0;
-    bool was_sea = base_msl_m_ <= 0;
-    const float base_msl_m = base_msl_m_;
-    const auto add = [&](const PathPost& post) {
-      const float range_m = post.range_m, height_msl_m = post.height_msl_m;
-      if (std::isnan(height_msl_m)) return;  // beside a void that no crossing touches
+    bool was_sea;
+
+    EMSCAPE_HD explicit TrendSums(float base) : base_msl_m(base), was_sea(base <= 0) {}
+
+    /// @param height_msl_m  NaN, beside a void: left out
+    EMSCAPE_HD void add(float range_m, float height_msl_m) {
+      if (std::isnan(height_msl_m)) return;
       const float length_m = range_m - before_m, height_m = height_msl_m - base_msl_m;
       const bool is_sea = height_msl_m <= 0;
       v1 = fmaf(length_m, before_height_m + height_m, v1);
@@ -278,25 +276,27 @@ class Receivers {
       before_m = range_m;
       before_height_m = height_m;
       was_sea = is_sea;
-    };
-    if (to_all) {
-      while (!posts_.each([](float, float, float) { return false; }, add)) {
-        v1 = v2 = sea_m = before_m = before_height_m = 0;
-        was_sea = base_msl_m_ <= 0;
-      }
-    } else {
-      posts_.eachOfSome(add);
     }
-    add(PathPost{distance_m_, ground_m_ + base_msl_m_});
-    const propagation::TerrainSums sums{static_cast<double>(v1), static_cast<double>(v2)};
-    trend_start_m_ = static_cast<float>(sums.start_m(static_cast<double>(distance_m_)));
-    trend_end_m_ = static_cast<float>(sums.end_m(static_cast<double>(distance_m_)));
-    if (task_.model.model.sea_by_height) sea_fraction_ = sea_m / distance_m_;
+  };
+  /// @param sums  of all posts, or of some
+  EMSCAPE_HD void setTrend(TrendSums& sums) {
+    sums.add(distance_m_, ground_m_ + base_msl_m_);
+    const propagation::TerrainSums of_terrain{static_cast<double>(sums.v1), static_cast<double>(sums.v2)};
+    trend_start_m_ = static_cast<float>(of_terrain.start_m(static_cast<double>(distance_m_)));
+    trend_end_m_ = static_cast<float>(of_terrain.end_m(static_cast<double>(distance_m_)));
+    if (task_.model.model.sea_by_height) sea_fraction_ = sums.sea_m / distance_m_;
+  }
+  /// From every second regular post, which are at the spacing of the elevation model, and of long paths from
+  /// some hundred.
+  EMSCAPE_NOINLINE EMSCAPE_HD void fitToSome() {
+    TrendSums sums(base_msl_m_);
+    posts_.eachOfSome([&](const PathPost& post) { sums.add(post.range_m, post.height_msl_m); });
+    setTrend(sums);
   }
 
   /// What posts of a part of the path that are not higher than a height cannot exceed.
   struct Bounds {
-    float tx_slope, clear_slope, rx_slope, nearest, plain_tx_slope, plain_rx_slope, plain_m;
+    float tx_slope, clear_slope, rx_slope, nearest;
   };
   EMSCAPE_HD Bounds boundsOf(float from_m, float to_m, float highest_msl_m, float slope,
                              float clearance) const {
@@ -306,7 +306,7 @@ class Receivers {
     const float widest = middle_m * (d - middle_m);
     const float height_m = fmaf(half_curvature_, widest, plain_m);
     const float rise_m = fmaxf(-slope * from_m, -slope * to_m);
-    const float line_m = height_m + rise_m, plain_line_m = plain_m + rise_m;
+    const float line_m = height_m + rise_m;
     const float per_from = approximateReciprocal(from_m), per_to = approximateReciprocal(to_m);
     const float beyond_from = d - from_m, beyond_to = d - to_m;
     const float narrowest = fminf(from_m * beyond_from, to_m * beyond_to);
@@ -315,9 +315,6 @@ class Receivers {
     most.clear_slope = most.tx_slope + clearance * std::sqrt(beyond_from * per_from);
     most.rx_slope = line_m * approximateReciprocal(line_m > 0 ? beyond_to : beyond_from);
     most.nearest = line_m * approximateReciprocalRoot(line_m > 0 ? narrowest : widest);
-    most.plain_tx_slope = plain_m * (plain_m > 0 ? per_from : per_to);
-    most.plain_rx_slope = plain_line_m * approximateReciprocal(plain_line_m > 0 ? beyond_to : beyond_from);
-    most.plain_m = plain_line_m;
     return most;
   }
 
@@ -334,7 +331,9 @@ class Receivers {
     bool is_whole;
     Several<kReceivers, kEarth, true> several(*this, rx_m);
     CandidatePosts::Records records(lowest_slope);
+    TrendSums trend(base_msl_m);
     do {
+      trend = TrendSums(base_msl_m);
       tx = clear = plain_tx = -HUGE_VALF;
       unknown = base_msl_m_ - base_msl_m_ + (ground_m_ - ground_m_);
       several.clear();
@@ -342,16 +341,15 @@ class Receivers {
       kept = 0;
       const auto skips = [&](float from_m, float to_m, float highest_msl_m) -> bool {
         if constexpr (kReceivers > 1) return false;  // after a first pass of too many candidates
+        if constexpr (kEarth) return false;          // the line is fitted to all posts
         const Bounds bounds = boundsOf(from_m, to_m, highest_msl_m, lowest_slope, clearance);
         const bool is_below = (bounds.tx_slope <= tx) & (bounds.clear_slope <= clear) &
                               (bounds.rx_slope <= records.rx_slope) & (bounds.nearest <= records.nearest);
-        // Or clear of the lowest line of sight.
-        if constexpr (!kEarth) return is_below | (bounds.nearest <= -clearance);
-        return is_below & (bounds.plain_tx_slope <= plain_tx) &
-               (bounds.plain_rx_slope <= records.plain_rx_slope) & (bounds.plain_m <= records.plain_m);
+        return is_below | (bounds.nearest <= -clearance);  // or clear of the lowest line of sight
       };
       is_whole = posts_.each(skips, [&](const PathPost& post) {
         unknown += post.height_msl_m - post.height_msl_m;
+        if constexpr (kEarth) trend.add(post.range_m, post.height_msl_m);
         const SeenPost seen(post, d, base_msl_m, tx_m, half_curvature);
         const float per_range = (d - seen.range_m) * seen.root;
         tx = fmaxf(tx, per_range * (seen.height_m * seen.root));
@@ -365,6 +363,7 @@ class Receivers {
       });
     } while (!is_whole);
     if constexpr (kKeeps) candidates_.end(kept);
+    if constexpr (kEarth) setTrend(trend);
     tx_slope_ = tx;
     clear_slope_ = clear;
     plain_tx_slope_ = plain_tx;
