@@ -11,62 +11,7 @@ namespace {
 using scenario::LandCoverView;
 using scenario::TerrainRaster;
 
-constexpr int kPosts = BlockCover::kPosts;
 constexpr auto kFree_m = static_cast<float>(kClutterFree_m), kRounding_m = 0.05f;
-
-/// Coordinates of posts in cells, relative to the part's first cell.
-struct CellTask {
-  float column, row, column_length, row_length;  ///< of the part
-  float first_m, per_m;
-  float distance_m, columns_per_m, rows_per_m;
-  float beside_m;
-  int columns, crossings;  ///< numbers of posts
-};
-struct Cells {
-  float part[kPosts];
-  int column[kPosts], row[kPosts];
-  int beside_column[kPosts],
-      beside_row[kPosts];  ///< the same, or the next one, if that is as near as beside_m
-  /// 0: not raised; 1: raised; 2: raised, and there is a next cell; 3: perhaps raised
-  int state[kPosts];
-};
-
-EMSCAPE_SIMD_CLONES void findCells(const CellTask& of, const float* range_m, Cells& cells) {
-  constexpr float kOnLine_m = 0.02f;
-  const CellTask task = of;
-  // A path beside crosses a line farther along it, the more parallel the farther.
-  const float along_x = std::fabs(task.column_length * task.rows_per_m),
-              along_y = std::fabs(task.row_length * task.columns_per_m), kLeast = 1e-6f;
-  const float on_row_m = task.beside_m * (1 + along_x / (along_y + kLeast)),
-              on_column_m = task.beside_m * (1 + along_y / (along_x + kLeast));
-#pragma omp simd
-  for (int n = 0; n < kPosts; ++n) {
-    const bool is_on_column = n < task.columns, is_on_row = !is_on_column && n < task.crossings;
-    const float near_x = (is_on_column ? kOnLine_m
-                          : is_on_row  ? on_row_m
-                                       : task.beside_m) *
-                         task.columns_per_m;
-    const float near_y = (is_on_column ? on_column_m
-                          : is_on_row  ? kOnLine_m
-                                       : task.beside_m) *
-                         task.rows_per_m;
-    const float range = range_m[n], beyond = task.distance_m - range;
-    const float nearer = range < beyond ? range : beyond;
-    const float part = (range - task.first_m) * task.per_m;
-    const float x = task.column + part * task.column_length, y = task.row + part * task.row_length;
-    const float cell_x = std::floor(x), cell_y = std::floor(y), in_x = x - cell_x, in_y = y - cell_y;
-    const int column = static_cast<int>(cell_x), row = static_cast<int>(cell_y);
-    cells.part[n] = part;
-    cells.column[n] = column;
-    cells.row[n] = row;
-    const int to_column = in_x < near_x ? -1 : in_x > 1 - near_x ? 1 : 0;
-    const int to_row = in_y < near_y ? -1 : in_y > 1 - near_y ? 1 : 0;
-    cells.beside_column[n] = column + to_column;
-    cells.beside_row[n] = row + to_row;
-    const int raised = (to_column | to_row) == 0 ? 1 : 2;
-    cells.state[n] = nearer > kFree_m + kRounding_m ? raised : nearer > kFree_m - kRounding_m ? 3 : 0;
-  }
-}
 
 }  // namespace
 
@@ -99,56 +44,100 @@ inline float BlockCover::heightOf(std::uint8_t cell, float surface_m) const {
   return classes_.isWater(cell) ? 0 : std::max(surface_m, 0.0f);
 }
 
-float BlockCover::surface_m(const RasterLine& line, float part, float ground_msl_m) const {
+float BlockCover::surface_m(double column, double row, float ground_msl_m) const {
   const TerrainRaster& raster = terrain_.rasters[0];
-  const auto at = static_cast<double>(part);
-  return terrain_.surfaceAt(
-             raster.south_rad + (line.row + at * line.row_length) / raster.posts_per_rad_lat,
-             raster.west_rad + (line.column + at * line.column_length) / raster.posts_per_rad_lon) -
+  return terrain_.surfaceAt(raster.south_rad + row / raster.posts_per_rad_lat,
+                            raster.west_rad + column / raster.posts_per_rad_lon) -
          ground_msl_m;
 }
 
-EMSCAPE_SIMD_CLONES unsigned BlockCover::raise(const RasterLine& line, int columns, int crossings, int count,
-                                               float distance_m, float beside_m, float base_msl_m,
-                                               const float* range_m, float* height_m) const {
-  double column = first_column_ + line.column * per_column_;
+EMSCAPE_SIMD_CLONES unsigned BlockCover::raise(const CoverTask& task, unsigned lanes, float* height_m) const {
+  using Floats = PathFloats;
+  using Ints = PathInts;
+  constexpr float kOnLine_m = 0.02f, kLeast = 1e-6f;
+  Floats range_m, distance_m, beside_m, to_columns, to_rows, columns_on, rows_on;
+  load(task.range_m, range_m);
+  load(task.distance_m, distance_m);
+  load(task.beside_m, beside_m);
+  load(task.column, to_columns);
+  load(task.row, to_rows);
+  load(task.columns, columns_on);
+  load(task.rows, rows_on);
+  // Cells relative to that of the first path.
+  const double first_column = static_cast<double>(task.column[0]) + task.corner_column,
+               first_row = static_cast<double>(task.row[0]) + task.corner_row;
+  double column = first_column_ + first_column * per_column_;
   if (column < 0 || column >= turn_cells_) column -= turn_cells_ * std::floor(column / turn_cells_);
-  const double row = first_row_ + line.row * per_row_;
-  const double first_column = std::floor(column), first_row = std::floor(row);
-  Cells cells;
-  findCells({static_cast<float>(column - first_column), static_cast<float>(row - first_row),
-             static_cast<float>(line.column_length * per_column_),
-             static_cast<float>(line.row_length * per_row_), line.first_m, 1 / line.length_m, distance_m,
-             columns_per_m_, rows_per_m_, beside_m, columns, crossings},
-            range_m, cells);
-  const int west = static_cast<int>(first_column), south = static_cast<int>(first_row);
-  unsigned doubtful = 0, others = 0;
-  float raise_m[kPosts] = {};
-  for (int n = 0; n < count; ++n)
-    raise_m[n] = classes_.raise_m(cellAt(west + cells.column[n], south + cells.row[n]));
-  const int last_simple = terrain_.surface_count > 0 ? 0 : 1;
-#pragma omp simd reduction(| : others)
-  for (int n = 0; n < kPosts; ++n) {
-    const int state = cells.state[n];
-    height_m[n] += state == 1 && state <= last_simple ? raise_m[n] : 0.0f;
-    others |= (state > last_simple ? 1u : 0u) << n;
+  const double row = first_row_ + first_row * per_row_;
+  const int west = static_cast<int>(std::floor(column)), south = static_cast<int>(std::floor(row));
+  const auto per_column = static_cast<float>(per_column_), per_row = static_cast<float>(per_row_);
+  const Floats x = (to_columns - task.column[0]) * per_column + static_cast<float>(column - west);
+  const Floats y = (to_rows - task.row[0]) * per_row + static_cast<float>(row - south);
+  const Ints none{}, one = none + 1;
+  const auto floorOf = [](const Floats& of, Ints& cell) {
+    cell = __builtin_convertvector(of, Ints);
+    cell = __builtin_convertvector(cell, Floats) > of ? cell - 1 : cell;
+  };
+  Ints cell_x, cell_y;
+  floorOf(x, cell_x);
+  floorOf(y, cell_y);
+  const Floats in_x = x - __builtin_convertvector(cell_x, Floats),
+               in_y = y - __builtin_convertvector(cell_y, Floats);
+  // A path beside crosses a line farther along it, the more parallel the farther.
+  const Floats x_on = columns_on * (per_column * rows_per_m_), y_on = rows_on * (per_row * columns_per_m_);
+  const Floats along_x = x_on < 0 ? -x_on : x_on, along_y = y_on < 0 ? -y_on : y_on;
+  Floats near_x = beside_m * columns_per_m_, near_y = beside_m * rows_per_m_;
+  if (task.on == PostOn::column) {
+    near_x = Floats{} + kOnLine_m * columns_per_m_;
+    near_y *= 1 + along_y / (along_x + kLeast);
+  } else if (task.on == PostOn::row) {
+    near_x *= 1 + along_x / (along_y + kLeast);
+    near_y = Floats{} + kOnLine_m * rows_per_m_;
   }
-  for (others &= (1u << count) - 1; others != 0; others &= others - 1) {
-    const int n = __builtin_ctz(others);
+  const Ints after_x = in_x > 1 - near_x ? one : none, after_y = in_y > 1 - near_y ? one : none;
+  const Ints beside_x = in_x < near_x ? -one : after_x, beside_y = in_y < near_y ? -one : after_y;
+  const Floats beyond_m = distance_m - range_m, nearer_m = range_m < beyond_m ? range_m : beyond_m;
+  const Ints is_raised = nearer_m > kFree_m - kRounding_m ? one : none;
+  const Ints is_near_end = nearer_m > kFree_m + kRounding_m ? none : one;
+  const Ints is_other = beside_x | beside_y | is_near_end;
+  int columns[kPathLanes], rows[kPathLanes], to_column[kPathLanes], to_row[kPathLanes];
+  int raised_of[kPathLanes], other_of[kPathLanes];
+  store(cell_x + west, columns);
+  store(cell_y + south, rows);
+  store(beside_x, to_column);
+  store(beside_y, to_row);
+  store(is_raised, raised_of);
+  store(is_other, other_of);
+  unsigned raised = 0, others = 0;  // bit i: perhaps with clutter; perhaps another cell, or without clutter
+#pragma omp simd reduction(| : raised, others)
+  for (int n = 0; n < kPathLanes; ++n) {
+    raised |= (raised_of[n] != 0 ? 1u : 0u) << n;
+    others |= (other_of[n] != 0 ? 1u : 0u) << n;
+  }
+  unsigned doubtful = 0;
+  for (unsigned left = lanes & raised; left != 0; left &= left - 1) {
+    const int n = __builtin_ctz(left);
     if (!(height_m[n] > -HUGE_VALF)) continue;
-    const int i = west + cells.column[n], j = south + cells.row[n];
-    const int beside_i = west + cells.beside_column[n], beside_j = south + cells.beside_row[n];
-    const std::uint8_t here = cellAt(i, j);
-    const float above_m =
-        terrain_.surface_count > 0 ? surface_m(line, cells.part[n], height_m[n] + base_msl_m) : NAN;
-    const float here_m = heightOf(here, above_m);
-    float most_m = here_m, least_m = cells.state[n] < 3 ? here_m : 0;
-    for (const std::uint8_t cell : {cellAt(beside_i, j), cellAt(i, beside_j), cellAt(beside_i, beside_j)}) {
-      const float beside = heightOf(cell, above_m);
-      most_m = std::max(most_m, beside);
-      least_m = std::min(least_m, beside);
+    const std::uint8_t here = cellAt(columns[n], rows[n]);
+    float above_m = NAN;
+    if (terrain_.surface_count > 0) {
+      above_m = surface_m(static_cast<double>(task.column[n]) + task.corner_column,
+                          static_cast<double>(task.row[n]) + task.corner_row, height_m[n] + task.base_msl_m);
     }
-    if (most_m > least_m) doubtful |= 1u << n;
+    const float here_m = heightOf(here, above_m);
+    float most_m = here_m;
+    if ((others >> n & 1) != 0) {
+      const float nearer = std::min(task.range_m[n], task.distance_m[n] - task.range_m[n]);
+      float least_m = nearer > kFree_m + kRounding_m ? here_m : 0;
+      const int beside_column = columns[n] + to_column[n], beside_row = rows[n] + to_row[n];
+      for (const std::uint8_t cell : {cellAt(beside_column, rows[n]), cellAt(columns[n], beside_row),
+                                      cellAt(beside_column, beside_row)}) {
+        const float beside = heightOf(cell, above_m);
+        most_m = std::max(most_m, beside);
+        least_m = std::min(least_m, beside);
+      }
+      if (most_m > least_m) doubtful |= 1u << n;
+    }
     height_m[n] += most_m;
   }
   return doubtful;

@@ -1,40 +1,55 @@
-/// Clutter heights along a short straight part of a path.
+/// Clutter heights at posts of several paths.
 #pragma once
+
+#include <cstring>
 
 #include "emfield/ground/read_cover.h"
 
 namespace emscape::emfield {
 
-/// A part of a path in columns and rows of the finest raster, from its begin by a length.
-struct RasterLine {
-  double column, row, column_length, row_length;
-  float first_m, length_m;  ///< ranges
+/// Paths that are searched together, each in a vector lane.
+constexpr int kPathLanes = 16;
+using PathFloats = float __attribute__((vector_size(kPathLanes * sizeof(float))));
+using PathInts = int __attribute__((vector_size(kPathLanes * sizeof(int))));
+
+// Vectors are parameters by reference: as values they have no calling convention on all processors.
+template <class Vector>
+inline void load(const void* numbers, Vector& vector) {
+  std::memcpy(&vector, numbers, sizeof vector);
+}
+template <class Vector>
+inline void store(const Vector& vector, void* numbers) {
+  std::memcpy(numbers, &vector, sizeof vector);
+}
+
+/// The lines between posts of the finest raster on which a post is.
+enum class PostOn { column, row, neither };
+
+/// A post of each of some paths, in columns and rows of the finest raster.
+struct CoverTask {
+  PostOn on;
+  const float *range_m, *column, *row;  ///< relative to a corner
+  const float *columns, *rows;          ///< by which the path goes on, over a short length
+  const float *distance_m, *beside_m;   ///< of the paths; their largest distance from their profiles' paths
+  int corner_column, corner_row;
+  float base_msl_m;  ///< to which heights are relative
 };
 
-/// Adds clutter to posts as raiseByClutter() does. The path is beside that of its profile by some
-/// millimetres: where that may decide on the class of the ground, the higher clutter is taken.
+/// Adds clutter to posts as raiseByClutter() does. A path is beside that of its profile by some millimetres:
+/// where that may decide on the class of the ground, the higher clutter is taken.
 class BlockCover {
  public:
-  static constexpr int kPosts = 16;  ///< most posts of a part
-
   /// @param terrain  with rasters and clutter; must outlive this object
   explicit BlockCover(const scenario::TerrainView& terrain);
 
-  /// @param columns     number of posts on columns of the raster, the first ones
-  /// @param crossings   the same with those on rows, the next ones
-  /// @param count       of all posts
-  /// @param distance_m  of the path
-  /// @param beside_m    largest distance from the profile's path
-  /// @param base_msl_m  to which heights are relative
-  /// @param height_m    kPosts, of which `count` are raised. Posts at -infinity are none
-  /// @return bit i: the height of post i is an upper bound
-  unsigned raise(const RasterLine& line, int columns, int crossings, int count, float distance_m,
-                 float beside_m, float base_msl_m, const float* range_m, float* height_m) const;
+  /// @param lanes  bit i: the height of path i is raised, unless it is -infinity
+  /// @return bit i: the height of path i is an upper bound
+  unsigned raise(const CoverTask& task, unsigned lanes, float* height_m) const;
 
  private:
   std::uint8_t cellAt(int column, int row) const;
   float heightOf(std::uint8_t cell, float surface_m) const;
-  float surface_m(const RasterLine& line, float part, float ground_msl_m) const;
+  float surface_m(double column, double row, float ground_msl_m) const;
 
   const scenario::TerrainView& terrain_;
   ClassCovers classes_;

@@ -1,7 +1,5 @@
 #include "emfield/excess/path_posts.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "base/math/simd.h"
@@ -10,64 +8,9 @@ namespace emscape::emfield {
 namespace {
 
 constexpr int kBlock = SectorPosts::kBlock;
-constexpr int kCrossings = PathPosts::kCrossings, kOfBlock = PathPosts::kOfBlock;
-static_assert(kOfBlock == kCrossings + kBlock);
 
-/// The crossings of a short straight part of a path with columns or rows.
-struct Lines {
-  float begin, length;  ///< coordinate whose integers are the lines
-  float per_length;
-  int first, step, count;
-
-  /// @param overlap  the part begins earlier by this
-  Lines(float begin_at, float end_at, float overlap) : begin(begin_at), length(end_at - begin_at) {
-    const bool rises = length > 0;
-    const int cell = static_cast<int>(rises ? begin - overlap : begin + overlap),
-              last = static_cast<int>(end_at);
-    first = rises ? cell + 1 : cell;
-    step = rises ? 1 : -1;
-    count = rises ? last - cell : cell - last;
-    per_length = count > 0 ? 1 / length : 0;
-  }
-};
-
-/// A block's part of a path, and its raster.
-struct CrossingTask {
-  Lines columns, rows;
-  const float* corner_msl_m;
-  int row_posts;
-  float base_msl_m, first_m, length_m;
-};
-
-using Floats = float __attribute__((vector_size(kOfBlock * sizeof(float))));
-using Ints = int __attribute__((vector_size(kOfBlock * sizeof(int))));
-
-/// Reads the crossings; other places are below everything. By vectors: g++ makes branches of a loop.
-inline void readCrossingsOfBlock(const CrossingTask& task, float* range_m, float* height_m) {
-  const Lines &columns = task.columns, &rows = task.rows;
-  const Floats zero{}, one = zero + 1;
-  const Ints number{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-  const Ints on_column = number < columns.count, is_used = number < columns.count + rows.count;
-  const Ints of_row = is_used & (number - columns.count);
-  const Ints line = on_column ? columns.first + columns.step * number : rows.first + rows.step * of_row;
-  const Floats begin = on_column ? zero + columns.begin : zero + rows.begin;
-  const Floats along = (__builtin_convertvector(line, Floats) - begin) *
-                       (on_column ? zero + columns.per_length : zero + rows.per_length);
-  const Floats part = along > 0 ? (along < 1 ? along : one) : zero;
-  const Floats x = columns.begin + part * columns.length, y = rows.begin + part * rows.length;
-  const Floats across = on_column ? y : x;
-  const Ints cell = __builtin_convertvector(across, Ints);
-  const Ints post = (on_column ? cell : line) * task.row_posts + (on_column ? line : cell);
-  const Ints next = post + (on_column ? Ints{} + task.row_posts : Ints{} + 1);
-  Floats near_msl_m, next_msl_m;
-  for (int n = 0; n < kOfBlock; ++n) near_msl_m[n] = task.corner_msl_m[post[n]];
-  for (int n = 0; n < kOfBlock; ++n) next_msl_m[n] = task.corner_msl_m[next[n]];
-  const Floats to_next = across - __builtin_convertvector(cell, Floats);
-  const Floats above_m = near_msl_m + to_next * (next_msl_m - near_msl_m) - task.base_msl_m;
-  const Floats at_m = task.first_m + part * task.length_m, here_m = is_used ? above_m : zero - HUGE_VALF;
-  std::memcpy(range_m, &at_m, sizeof at_m);
-  std::memcpy(height_m, &here_m, sizeof here_m);
-}
+using Floats = PathFloats;
+using Ints = PathInts;
 
 }  // namespace
 
@@ -76,141 +19,231 @@ PathPosts::PathPosts(const SectorObstacles& obstacles, const SectorTerrain& terr
     : obstacles_(obstacles),
       terrain_(terrain),
       cover_(cover),
-      longest_chord_m_(static_cast<float>(maxChord_m(sine_of_latitude))) {
+      longest_chord_m_(static_cast<float>(maxChord_m(sine_of_latitude))),
+      slots_(kMaxSlots) {
   constexpr double kOf75Degrees = 0.965925826289068;
   longest_chord_beside_m_ = sine_of_latitude < kOf75Degrees ? 0.02f : 0.1f;  // see terrain_walk.h
-  const auto blocks = static_cast<std::size_t>(obstacles.posts.blocks());
-  for (auto* const posts : {&range_m_, &height_m_}) posts->resize(blocks * kOfBlock);
-  for (auto* const of_blocks : {&read_for_, &raised_for_, &clutter_read_for_, &columns_, &used_})
-    of_blocks->resize(blocks);
-  doubtful_.resize(blocks);
 }
 
-void PathPosts::begin(const PathToRead& path) {
+void PathPosts::begin(PathLanes& paths) {
   constexpr float kRounding_m = 0.005f;
-  path_ = &path;
-  ++number_;
-  is_left_ = false;
-  chord_m_ = path.distance_m / (std::floor(path.distance_m / longest_chord_m_) + 1);
-  const float part = chord_m_ / longest_chord_m_;  // the deviation grows by the cube
-  clutter_m_.clear();
-  clutter_posts_.clear();
+  paths_ = &paths;
+  if (!areRaised()) return;
   const GroundPosts& ground = obstacles_.ground;
-  mirrored_m_ = static_cast<float>(
-      ground.has_clutter ? path.exact_distance_m - ground.ranges_m[ground.clutter_end] : HUGE_VAL);
-  beside_m_ = kRounding_m + longest_chord_beside_m_ * part * part * part;
+  mirrored_m_ = HUGE_VALF;
+  for (int l = 0; l < kPathLanes; ++l) {
+    chord_m_[l] = paths.distance_m[l] / (std::floor(paths.distance_m[l] / longest_chord_m_) + 1);
+    const float part = chord_m_[l] / longest_chord_m_;  // the deviation grows by the cube
+    beside_m_[l] = kRounding_m + longest_chord_beside_m_ * part * part * part;
+    if (!ground.has_clutter) continue;
+    mirrored_m_ = std::min(
+        mirrored_m_, static_cast<float>(paths.exact_distance_m[l] - ground.ranges_m[ground.clutter_end]));
+  }
+  clutter_posts_.resize(ground.clutterPosts());
+  for (int n = 0; n < ground.clutterPosts(); ++n) {
+    for (int l = 0; l < kPathLanes; ++l) {
+      const double path_m = paths.exact_distance_m[l], at_m = ground.clutterPost_m(n, path_m);
+      clutter_posts_[n].range_m[l] = isClutterAt(at_m, path_m) ? static_cast<float>(at_m) : HUGE_VALF;
+    }
+  }
 }
 
-inline PathPosts::Part PathPosts::partIn(int block) const {
+void PathPosts::leave(unsigned lanes) {
+  for (int l = 0; l < kPathLanes; ++l) paths_->is_left[l] |= static_cast<int>(lanes >> l & 1);
+}
+
+inline void PathPosts::setPart(int block) {
   const SectorPosts& posts = obstacles_.posts;
-  const SectorChord& chord = terrain_.chord(block / posts.blocksPerChord());
-  const float first_m = posts.first_m()[block], whole_m = posts.last_m()[block] - first_m;
-  const float length_m = std::min(posts.last_m()[block], path_->last_m) - first_m;
-  const float begin = posts.firstPart()[block], end = posts.lastPart()[block];
-  // Exactly where the next block begins, if the path reaches it: no crossing is between them.
-  const float end_of_path = length_m < whole_m ? begin + (end - begin) * length_m / whole_m : end;
-  return {chord,
-          alongPath(chord.column, path_->aside),
-          alongPath(chord.row, path_->aside),
-          begin,
-          end_of_path,
-          first_m,
-          length_m};
+  chord_ = &terrain_.chord(block / posts.blocksPerChord());
+  part_.first_m = posts.first_m()[block];
+  part_.whole_m = posts.last_m()[block] - part_.first_m;
+  part_.begin = posts.firstPart()[block];
+  part_.end = posts.lastPart()[block];
+  // Chords meet within rounding: the first block of one begins a little earlier.
+  part_.overlap = block > 0 && block % posts.blocksPerChord() == 0 ? 1e-4f : 0;
+  const SectorChord chord = *chord_;
+  const float first_m = part_.first_m, whole_m = part_.whole_m, begin = part_.begin, end = part_.end;
+  const PathLanes& paths = *paths_;
+#pragma omp simd
+  for (int l = 0; l < kPathLanes; ++l) {
+    const float to_last_m = paths.last_m[l] - first_m;
+    const float within_m = to_last_m < whole_m ? to_last_m : whole_m;
+    const float length_m = within_m > 0 ? within_m : 0;
+    // Exactly where the next block begins, if the path reaches it: no crossing is between them.
+    const float end_of_path = length_m < whole_m ? begin + (end - begin) * length_m / whole_m : end;
+    const Parabola<float> column = alongPath(chord.column, paths.aside[l]),
+                          row = alongPath(chord.row, paths.aside[l]);
+    part_.length_m[l] = length_m;
+    part_.column[l] = column.at(begin);
+    part_.row[l] = row.at(begin);
+    part_.columns[l] = column.at(end_of_path) - part_.column[l];
+    part_.rows[l] = row.at(end_of_path) - part_.row[l];
+  }
 }
 
-inline RasterLine PathPosts::lineIn(int block) const {
-  const Part part = partIn(block);
-  const auto column = static_cast<double>(part.column.at(part.begin)),
-             row = static_cast<double>(part.row.at(part.begin));
-  return {column + part.chord.corner_column,
-          row + part.chord.corner_row,
-          static_cast<double>(part.column.at(part.end)) - column,
-          static_cast<double>(part.row.at(part.end)) - row,
-          part.first_m,
-          part.length_m};
+/// Reads the crossings with columns or with rows. By vectors: g++ makes branches of a loop.
+template <bool kOnColumns>
+inline void PathPosts::readCrossings() {
+  const Floats zero{}, one = zero + 1;
+  Floats begin, length, across_begin, across_length, length_m, last_m;
+  load(kOnColumns ? part_.column : part_.row, begin);  // whose integers are the lines
+  load(kOnColumns ? part_.columns : part_.rows, length);
+  load(kOnColumns ? part_.row : part_.column, across_begin);
+  load(kOnColumns ? part_.rows : part_.columns, across_length);
+  load(part_.length_m, length_m);
+  load(paths_->last_m, last_m);
+  const Ints none{}, forward = none + 1;
+  const Floats from = length > 0 ? begin - part_.overlap : begin + part_.overlap;
+  const Ints cell = __builtin_convertvector(from, Ints);
+  const Ints last = __builtin_convertvector(begin + length, Ints);
+  const Ints crossings = length > 0 ? last - cell : cell - last;
+  const Ints counts = length_m > 0 ? crossings : none;
+  const Ints first = length > 0 ? cell + 1 : cell, step = length > 0 ? forward : -forward;
+  const Floats per_length = counts > 0 ? 1 / length : zero;
+  int count[kPathLanes], most = 0;
+  std::memcpy(count, &counts, sizeof count);
+  for (const int of_path : count) most = std::max(most, of_path);
+  if (most > kMaxCrossings) {
+    leave((1u << kPathLanes) - 1);
+    return;
+  }
+  const float* const corner_msl_m = chord_->corner_msl_m;
+  const int row_posts = terrain_.rowPosts(), to_next_post = kOnColumns ? row_posts : 1;
+  for (int n = 0; n < most; ++n) {
+    Slot& slot = slots_[count_++];
+    slot.on = kOnColumns ? PostOn::column : PostOn::row;
+    const Ints is_used = counts > n, line = first + (is_used ? n * step : none);
+    const Floats at_line = __builtin_convertvector(line, Floats), along = (at_line - begin) * per_length;
+    const Floats part = along > 0 ? (along < 1 ? along : one) : zero;
+    const Floats across = across_begin + part * across_length;
+    const Ints across_cell = __builtin_convertvector(across, Ints);
+    const Ints post = kOnColumns ? across_cell * row_posts + line : line * row_posts + across_cell;
+    int place[kPathLanes];
+    float near_of[kPathLanes], next_of[kPathLanes];
+    std::memcpy(place, &post, sizeof place);
+#pragma omp simd
+    for (int l = 0; l < kPathLanes; ++l) {
+      near_of[l] = corner_msl_m[place[l]];
+      next_of[l] = corner_msl_m[place[l] + to_next_post];
+    }
+    Floats near_msl_m, next_msl_m;
+    load(near_of, near_msl_m);
+    load(next_of, next_msl_m);
+    const Floats to_next = across - __builtin_convertvector(across_cell, Floats);
+    const Floats above_m = near_msl_m + to_next * (next_msl_m - near_msl_m) - terrain_.base_msl_m();
+    store(is_used ? part_.first_m + part * length_m : last_m / 2, slot.range_m);
+    store(is_used ? above_m : zero - HUGE_VALF, slot.height_m);
+    if (!areRaised()) continue;
+    store(at_line, kOnColumns ? slot.column : slot.row);
+    store(across, kOnColumns ? slot.row : slot.column);
+  }
+}
+
+/// Reads the posts of the paths at one range each; infinite: none.
+inline void PathPosts::readAt(const float* at_m) {
+  Slot& slot = slots_[count_++];
+  slot.on = PostOn::neither;
+  const Floats zero{};
+  Floats range_m, length_m, last_m, column, row, columns, rows;
+  load(at_m, range_m);
+  load(part_.length_m, length_m);
+  load(paths_->last_m, last_m);
+  load(part_.column, column);
+  load(part_.row, row);
+  load(part_.columns, columns);
+  load(part_.rows, rows);
+  const Floats within_m = range_m < HUGE_VALF ? length_m : zero;
+  const Floats along = within_m > 0 ? (range_m - part_.first_m) / within_m : zero;
+  const Floats x = column + along * columns, y = row + along * rows;
+  const Ints i = __builtin_convertvector(x, Ints), j = __builtin_convertvector(y, Ints);
+  int place[kPathLanes];
+  float of_lanes[4][kPathLanes];
+  const int row_posts = terrain_.rowPosts();
+  store(j * row_posts + i, place);
+  const float *const south_msl_m = chord_->corner_msl_m, *const north_msl_m = south_msl_m + row_posts;
+#pragma omp simd
+  for (int l = 0; l < kPathLanes; ++l) {
+    of_lanes[0][l] = south_msl_m[place[l]];
+    of_lanes[1][l] = south_msl_m[place[l] + 1];
+    of_lanes[2][l] = north_msl_m[place[l]];
+    of_lanes[3][l] = north_msl_m[place[l] + 1];
+  }
+  Floats west, east, west_north, east_north;
+  load(of_lanes[0], west);
+  load(of_lanes[1], east);
+  load(of_lanes[2], west_north);
+  load(of_lanes[3], east_north);
+  const Floats to_east = x - __builtin_convertvector(i, Floats),
+               to_north = y - __builtin_convertvector(j, Floats);
+  const Floats south = west + to_east * (east - west),
+               north = west_north + to_east * (east_north - west_north);
+  const Floats above_m = south + to_north * (north - south) - terrain_.base_msl_m();
+  store(within_m > 0 ? range_m : last_m / 2, slot.range_m);
+  store(within_m > 0 ? above_m : zero - HUGE_VALF, slot.height_m);
+  store(x, slot.column);
+  store(y, slot.row);
 }
 
 EMSCAPE_SIMD_CLONES void PathPosts::read(int block) {
-  if (read_for_[block] == number_) return;
-  read_for_[block] = number_;
-  const SectorPosts& posts = obstacles_.posts;
-  const Part part = partIn(block);
-  float *const range_m = range_m_.data() + block * kOfBlock, *const height_m =
-                                                                 height_m_.data() + block * kOfBlock;
-  // Chords meet within rounding: the first block of one begins a little earlier.
-  const float overlap = block > 0 && block % posts.blocksPerChord() == 0 ? 1e-4f : 0;
-  const Lines columns(part.column.at(part.begin), part.column.at(part.end), overlap);
-  const Lines rows(part.row.at(part.begin), part.row.at(part.end), overlap);
-  is_left_ = is_left_ || columns.count + rows.count > kCrossings;
-  columns_[block] = columns.count;
-  readCrossingsOfBlock({columns, rows, part.chord.corner_msl_m, terrain_.rowPosts(), terrain_.base_msl_m(),
-                        part.first_m, part.length_m},
-                       range_m, height_m);
-  used_[block] = kCrossings;
-  if (isNear(block) || areRaised()) {
-    const auto add = [&](int place, float at_m, float of_chord) {
-      used_[block] = kOfBlock;
-      range_m[kCrossings + place] = at_m;
-      height_m[kCrossings + place] = heightAt(part, of_chord);
-    };
-    if (isNear(block)) {
-      const int first = block * kBlock, end = std::min(obstacles_.ground.near_count, path_->before + 1);
-      for (int post = std::max(first, 1); post < std::min(first + kBlock, end); ++post)
-        add(post - first, posts.range_m()[post], posts.part()[post]);
-    } else {  // profiles have posts at the beginnings of chords
-      const float next_m = std::ceil(part.first_m / chord_m_) * chord_m_;
-      if (next_m < part.first_m + part.length_m) add(0, next_m, part.at(next_m));
-    }
-  }
-  if (terrain_.slack_m()[block] < HUGE_VALF) return;
-  for (int i = 0; i < used(block); ++i) is_left_ = is_left_ || std::isnan(height_m[i]);
-}
-
-EMSCAPE_SIMD_CLONES void PathPosts::raise(int block) {
-  raised_for_[block] = number_;
-  doubtful_[block] =
-      cover_->raise(lineIn(block), columns_[block], kCrossings, used_[block], path_->distance_m, beside_m_,
-                    terrain_.base_msl_m(), range_m(block), height_m_.data() + block * kOfBlock);
-}
-
-EMSCAPE_SIMD_CLONES void PathPosts::readClutterPosts(int block) {
+  count_ = 0;
+  setPart(block);
+  readCrossings<true>();
+  readCrossings<false>();
+  const PathLanes& paths = *paths_;
   const GroundPosts& ground = obstacles_.ground;
+  float at_m[kPathLanes];
+  if (block * kBlock < ground.near_count) {
+    const float* const range_m = obstacles_.posts.range_m();
+    for (int post = std::max(block * kBlock, 1); post < std::min((block + 1) * kBlock, ground.near_count);
+         ++post) {
+      for (int l = 0; l < kPathLanes; ++l) at_m[l] = post <= paths.before[l] ? range_m[post] : HUGE_VALF;
+      readAt(at_m);
+    }
+  } else if (areRaised()) {  // profiles have posts at the beginnings of chords
+    bool is_any = false;
+    for (int l = 0; l < kPathLanes; ++l) {
+      const float next_m = std::ceil(part_.first_m / chord_m_[l]) * chord_m_[l];
+      const bool is_here = next_m < part_.first_m + part_.length_m[l];
+      at_m[l] = is_here ? next_m : HUGE_VALF;
+      is_any = is_any || is_here;
+    }
+    if (is_any) readAt(at_m);
+  }
+  if (areRaised()) readClutterPosts(block);
+  if (terrain_.slack_m()[block] < HUGE_VALF) return;
+  for (int n = 0; n < count_; ++n) {
+    unsigned unknown = 0;
+    for (int l = 0; l < kPathLanes; ++l) unknown |= (std::isnan(slots_[n].height_m[l]) ? 1u : 0u) << l;
+    leave(unknown);
+  }
+}
+
+inline void PathPosts::readClutterPosts(int block) {
   const float* const last_m = obstacles_.posts.last_m();
-  if (clutter_m_.empty()) {
-    for (int n = 0; n < ground.clutterPosts(); ++n) {
-      const double at_m = ground.clutterPost_m(n, path_->exact_distance_m);
-      if (isClutterAt(at_m, path_->exact_distance_m)) clutter_m_.push_back(static_cast<float>(at_m));
+  const bool is_near = block == 0 || static_cast<double>(obstacles_.posts.first_m()[block]) <= kClutterFree_m;
+  if (!is_near && last_m[block] < mirrored_m_) return;
+  const float before_m = block > 0 ? last_m[block - 1] : -HUGE_VALF, end_m = last_m[block];
+  const float* const farthest_m = paths_->last_m;
+  for (const ClutterPosts& posts : clutter_posts_) {
+    float at_m[kPathLanes];
+    int any = 0;
+#pragma omp simd reduction(| : any)
+    for (int l = 0; l < kPathLanes; ++l) {
+      const float here_m = posts.range_m[l];
+      const bool is_here = (here_m > before_m) & ((here_m <= end_m) | (end_m >= farthest_m[l]));
+      at_m[l] = is_here ? here_m : HUGE_VALF;
+      any |= at_m[l] < HUGE_VALF ? 1 : 0;
     }
+    if (any != 0) readAt(at_m);
   }
-  constexpr int kMost = (kMostClutterPosts + kOfBlock - 1) / kOfBlock * kOfBlock;
-  float range_m[kMost], height_m[kMost];
-  int count = 0;
-  for (const float here_m : clutter_m_) {
-    const bool is_before = block > 0 && !(here_m > last_m[block - 1]);
-    const bool is_beyond = block + 1 < path_->blocks && here_m > last_m[block];
-    range_m[count] = here_m;
-    count += is_before || is_beyond ? 0 : 1;
-  }
-  const Part part = partIn(block);
-  const Parabola<float> column = part.column, row = part.row;
-  const float* const corner_msl_m = part.chord.corner_msl_m;
-  const int row_posts = terrain_.rowPosts();
-  const float base_msl_m = terrain_.base_msl_m();
-  for (int i = count; i % kOfBlock != 0; ++i) range_m[i] = height_m[i] = 0;
-#pragma omp simd
-  for (int i = 0; i < count; ++i) {
-    const float at = part.at(range_m[i]);
-    height_m[i] = bilinearHeight(corner_msl_m, row_posts, column.at(at), row.at(at)) - base_msl_m;
-  }
-  for (int begin = 0; begin < count; begin += kOfBlock) {
-    const int posts = std::min(count - begin, kOfBlock);
-    const unsigned doubtful = cover_->raise(lineIn(block), 0, 0, posts, path_->distance_m, beside_m_,
-                                            base_msl_m, range_m + begin, height_m + begin);
-    for (int i = 0; i < posts; ++i) {
-      is_left_ = is_left_ || std::isnan(height_m[begin + i]);
-      clutter_posts_.push_back({block, range_m[begin + i], height_m[begin + i], (doubtful >> i & 1) != 0});
-    }
-  }
+}
+
+unsigned PathPosts::raise(int n, unsigned lanes) {
+  Slot& slot = slots_[n];
+  return cover_->raise(
+      {slot.on, slot.range_m, slot.column, slot.row, part_.columns, part_.rows, paths_->distance_m, beside_m_,
+       chord_->corner_column, chord_->corner_row, terrain_.base_msl_m()},
+      lanes, slot.height_m);
 }
 
 }  // namespace emscape::emfield

@@ -1,6 +1,8 @@
-/// The posts of one path of a sector, read by blocks when they are needed.
+/// The posts of several paths of a sector, side by side in vector lanes, read by blocks when they are needed.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "emfield/excess/block_cover.h"
@@ -8,108 +10,84 @@
 
 namespace emscape::emfield {
 
-/// A path of a sector.
-struct PathToRead {
-  double exact_distance_m;
-  float distance_m;
-  int before;  ///< last regular post before the receivers
-  int blocks;
-  float last_m;  ///< largest range of an obstacle
-  float aside;   ///< in the sector, -1..1
+/// Paths of a sector that are searched together. Lanes beyond the last path are copies of it.
+struct PathLanes {
+  double exact_distance_m[kPathLanes];
+  float distance_m[kPathLanes];
+  float last_m[kPathLanes];  ///< largest range of an obstacle
+  float aside[kPathLanes];   ///< in the sector, -1..1
+  int before[kPathLanes];    ///< last regular post before the receivers
+  /// The path is to be read whole: it has a void, a block of too many posts, or a maximum that is not known
+  /// exactly.
+  int is_left[kPathLanes];
 };
 
-/// Reads posts along the sector's chords, which are those of the path's profile within millimetres.
+/// Reads posts along the sector's chords, which are those of the paths' profiles within millimetres.
 class PathPosts {
  public:
-  /// Posts of a path in a block: crossings, of which there are rarely more, and regular posts near the
-  /// emitter; of raised profiles elsewhere the beginning of a chord.
-  static constexpr int kCrossings = 8, kOfBlock = BlockCover::kPosts;
+  /// A post of each path. Heights are relative to the base; a path without this post has it at -infinity.
+  struct Slot {
+    float range_m[kPathLanes], height_m[kPathLanes];
+    float column[kPathLanes], row[kPathLanes];  ///< position, relative to the chord's corner
+    PostOn on;
+  };
 
   /// All must outlive this object.
   /// @param cover  by which profiles are raised; null: they are not
   PathPosts(const SectorObstacles& obstacles, const SectorTerrain& terrain, const BlockCover* cover,
             double sine_of_latitude);
 
-  /// @param path  must outlive its use
-  void begin(const PathToRead& path);
-  const PathToRead& path() const { return *path_; }
+  /// @param paths  must outlive its use
+  void begin(PathLanes& paths);
+  const PathLanes& paths() const { return *paths_; }
   bool areRaised() const { return cover_ != nullptr; }
 
-  /// Reads a block. Unused places are below everything.
+  /// Reads a block: its crossings, regular posts near the emitter and, of raised profiles elsewhere, the
+  /// beginning of a chord and the posts for clutter.
   void read(int block);
-  /// Whether clutter was added to a block that was read; adds it.
-  bool isRaised(int block) const { return raised_for_[block] == number_; }
-  void raise(int block);
-  /// Of a block that was read. Heights are relative to the base.
-  const float* range_m(int block) const { return range_m_.data() + block * kOfBlock; }
-  const float* height_m(int block) const { return height_m_.data() + block * kOfBlock; }
-  /// Bit i: the height of post i is an upper bound.
-  unsigned doubtful(int block) const { return doubtful_[block]; }
-  /// Number of the posts that a search has to visit, the first ones.
-  int used(int block) const { return used_[block]; }
-
-  /// A post for clutter (GroundPosts).
-  struct ClutterPost {
-    int block;
-    float range_m, height_m;
-    bool is_doubtful;  ///< the height is an upper bound
-  };
-  /// Calls visit(ClutterPost) for those of a block.
-  template <class Visit>
-  void eachClutterPost(int block, const Visit& visit) {
-    const bool is_near =
-        block == 0 || static_cast<double>(obstacles_.posts.first_m()[block]) <= kClutterFree_m;
-    if (!is_near && obstacles_.posts.last_m()[block] < mirrored_m_) return;
-    if (clutter_read_for_[block] != number_) {
-      clutter_read_for_[block] = number_;
-      readClutterPosts(block);
-    }
-    for (const ClutterPost& post : clutter_posts_) {
-      if (post.block == block) visit(post);
-    }
-  }
-
-  /// The path has a void, or a block of too many posts.
-  bool isLeft() const { return is_left_; }
-  void leave() { is_left_ = true; }
+  /// Of the block that was read.
+  int count() const { return count_; }
+  const Slot& operator[](int n) const { return slots_[n]; }
+  /// Adds clutter to a post of some paths. @param lanes  bit i: of path i
+  /// @return bit i: the height of path i is an upper bound
+  unsigned raise(int n, unsigned lanes);
+  /// The paths of these bits are to be read whole.
+  void leave(unsigned lanes);
 
  private:
-  /// The part of the path in a block, which is straight, within 0.1 mm.
-  struct Part {
-    const SectorChord& chord;
-    Parabola<float> column, row;
-    float begin, end;  ///< parts of the chord
-    float first_m, length_m;
+  /// Most crossings with columns and with rows in a block; rarely more than 6.
+  static constexpr int kMaxCrossings = 12;
+  static constexpr int kMaxSlots = 2 * kMaxCrossings + SectorPosts::kBlock + 1 + kMostClutterPosts;
 
-    float at(float range_m) const { return begin + (range_m - first_m) / length_m * (end - begin); }
+  /// The paths in a block, which are straight there, within 0.1 mm.
+  struct Part {
+    float column[kPathLanes], row[kPathLanes], columns[kPathLanes], rows[kPathLanes];  ///< begin and length
+    float first_m, length_m[kPathLanes];
+    float whole_m, overlap;
+    float begin, end;  ///< parts of the chord
   };
-  Part partIn(int block) const;
-  RasterLine lineIn(int block) const;
+  void setPart(int block);
+  template <bool kOnColumns>
+  void readCrossings();
+  void readAt(const float* at_m);
   void readClutterPosts(int block);
-  float heightAt(const Part& part, float of_chord) const {
-    return bilinearHeight(part.chord.corner_msl_m, terrain_.rowPosts(), part.column.at(of_chord),
-                          part.row.at(of_chord)) -
-           terrain_.base_msl_m();
-  }
-  bool isNear(int block) const { return block * SectorPosts::kBlock < obstacles_.ground.near_count; }
 
   const SectorObstacles& obstacles_;
   const SectorTerrain& terrain_;
   const BlockCover* cover_;
   float longest_chord_m_, longest_chord_beside_m_;
-  const PathToRead* path_ = nullptr;
-  int number_ = 0;        ///< of the path
-  float chord_m_ = 0;     ///< length of the chords of its profile
-  float mirrored_m_ = 0;  ///< first of the posts for clutter before the receivers
-  float beside_m_ = 0;    ///< largest distance from its profile's path
-  bool is_left_ = false;
-  // Of the blocks that were read:
-  std::vector<float> range_m_, height_m_;
-  std::vector<int> read_for_, raised_for_, clutter_read_for_;  ///< numbers of paths
-  std::vector<int> columns_, used_;                            ///< number of the posts on columns; of all
-  std::vector<unsigned> doubtful_;
-  std::vector<float> clutter_m_;  ///< ranges of the posts for clutter, once the first block needs them
-  std::vector<ClutterPost> clutter_posts_;
+  PathLanes* paths_ = nullptr;
+  float chord_m_[kPathLanes];   ///< length of the chords of their profiles
+  float beside_m_[kPathLanes];  ///< largest distance from their profiles' paths
+  float mirrored_m_ = 0;        ///< first of the posts for clutter before the receivers, of all paths
+  struct ClutterPosts {
+    float range_m[kPathLanes];  ///< infinite: none
+  };
+  std::vector<ClutterPosts> clutter_posts_;  ///< GroundPosts::clutterPost_m()
+  const SectorChord* chord_ = nullptr;       ///< of the block that was read
+  Part part_;
+  int count_ = 0;
+  std::vector<Slot> slots_;
 };
 
 }  // namespace emscape::emfield

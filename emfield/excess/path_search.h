@@ -1,4 +1,5 @@
-/// Finds the maxima over the posts of a path, of which most are never read: bounds of blocks leave few.
+/// Finds the maxima over the posts of several paths, of which most are never read: bounds of blocks leave
+/// few.
 #pragma once
 
 #include <algorithm>
@@ -8,124 +9,159 @@
 
 namespace emscape::emfield {
 
-/// A search for a maximum of the posts of a path.
-struct Maximum {
-  float value;
-  int block;              ///< that holds it, or a guess
-  bool is_bound = false;  ///< the true value may be less
+/// Maxima over the posts of each path. A path at infinity is not searched.
+struct PathMaxima {
+  float value[kPathLanes];
+  int block[kPathLanes];     ///< that holds it; -1: none exceeds the start
+  int is_bound[kPathLanes];  ///< the true value may be less
+
+  /// @param isSearched(lane), start(lane)
+  template <class IsSearched, class Start>
+  PathMaxima(const IsSearched& isSearched, const Start& start) {
+    for (int l = 0; l < kPathLanes; ++l) {
+      value[l] = isSearched(l) ? start(l) : HUGE_VALF;
+      block[l] = -1;
+      is_bound[l] = 0;
+    }
+  }
+  bool isSearched(int lane) const { return value[lane] < HUGE_VALF; }
+  bool areAny() const {
+    float least = HUGE_VALF;
+    for (const float of_path : value) least = of_path < least ? of_path : least;
+    return least < HUGE_VALF;
+  }
 };
 
 class PathSearch {
  public:
   PathSearch(const SectorObstacles& obstacles, const SectorTerrain& terrain, const SectorBounds& bounds,
              PathPosts& posts)
-      : obstacles_(obstacles), terrain_(terrain), bounds_(bounds), posts_(posts) {}
+      : obstacles_(obstacles),
+        terrain_(terrain),
+        bounds_(bounds),
+        posts_(posts),
+        visited_in_(obstacles.blocks.first_m.size()) {}
 
-  /// @param boundOf(lowered_m, tx_slope, first_m, last_m)  bound of valueOf over obstacles at those ranges
-  /// @param valueOf(range_m, height_m)                     of an obstacle
-  /// @param most  start of the search; receives the maximum
-  template <class BoundOf, class ValueOf>
-  void operator()(const BoundOf& boundOf, const ValueOf& valueOf, Maximum& most) const {
-    const int count = posts_.path().blocks, guess = std::min(most.block, count - 1);
-    const ObstacleBounds& blocks = bounds_.blocks();
-    const float last_m = std::min(obstacles_.blocks.last_m[guess], posts_.path().last_m);
-    if (boundOf(blocks.lowered_m[guess], blocks.tx_slope[guess], obstacles_.blocks.first_m[guess], last_m) >
-        most.value)
-      visit(guess, valueOf, most);
-    const auto visitGroup = [&](int group) {
-      descend(group, count, blocks, obstacles_.blocks, boundOf, most, [&](int block) {
-        if (block != guess) visit(block, valueOf, most);
-      });
+  /// @param boundOf(lane, lowered_m, tx_slope, first_m, last_m)  bound of valueOf over obstacles at those
+  /// ranges
+  /// @param valueOf(lane, range_m, height_m)  of an obstacle
+  /// @param most    start of the search; receives the maxima
+  /// @param guess   blocks that are visited first; receives those of the maxima
+  /// @param settle  called after that; may leave out paths, which are set to infinity
+  template <class BoundOf, class ValueOf, class Settle>
+  void operator()(const BoundOf& boundOf, const ValueOf& valueOf, PathMaxima& most, int* guess,
+                  const Settle& settle) {
+    ++number_;
+    const int blocks = terrain_.blocks();
+    const auto visitOnce = [&](int block) {
+      if (visited_in_[block] == number_) return;
+      visited_in_[block] = number_;
+      if (mayExceed(block, boundOf, most)) visit(block, valueOf, most);
     };
-    const int groups = groupsOf(count);
-    for (int of_groups = groupsOf(groups) - 1; of_groups >= 0; --of_groups)
-      descend(of_groups, groups, bounds_.groups(), obstacles_.groups, boundOf, most, visitGroup);
-    if (most.is_bound) posts_.leave();
-  }
-
-  /// A lower bound, from the posts of one block without their clutter.
-  template <class ValueOf>
-  float leastOf(int block, const ValueOf& valueOf) const {
-    posts_.read(block);
-    if (posts_.areRaised() && posts_.isRaised(block)) return -HUGE_VALF;
-    const float *const range_m = posts_.range_m(block), *const height_m = posts_.height_m(block);
-    float largest = -HUGE_VALF;
-#pragma omp simd reduction(max : largest)
-    for (int i = 0; i < PathPosts::kCrossings; ++i) {
-      const float value = valueOf(range_m[i], height_m[i]);
-      largest = value > largest ? value : largest;
+    for (int l = 0; l < kPathLanes; ++l) {
+      if (guess[l] < blocks) visitOnce(guess[l]);
     }
-    return largest;
-  }
-
-  /// The same among the posts of one block.
-  template <class ValueOf>
-  void visit(int block, const ValueOf& valueOf, Maximum& most) const {
-    constexpr int kCrossings = PathPosts::kCrossings, kOfBlock = PathPosts::kOfBlock;
-    constexpr float kRounding = 1e-5f;
-    posts_.read(block);
-    if (posts_.areRaised()) {
-      posts_.eachClutterPost(block, [&](const PathPosts::ClutterPost& post) {
-        const float value = valueOf(post.range_m, post.height_m);
-        if (value > most.value) most = {value, block, post.is_doubtful};
-      });
-    }
-    const float *const range_m = posts_.range_m(block), *const height_m = posts_.height_m(block);
-    const auto largestOf = [&](int begin, int end, float raised_m) {
-      float largest = -HUGE_VALF;
-#pragma omp simd reduction(max : largest)
-      for (int i = begin; i < end; ++i) {
-        const float value = valueOf(range_m[i], height_m[i] + raised_m);
-        largest = value > largest ? value : largest;
+    settle();
+    // Blocks that may hold a maximum, those with the highest bounds first.
+    constexpr int kGroup = SectorPosts::kGroup;
+    candidates_.clear();
+    for (int of_groups = 0; of_groups < groupsOf(groupsOf(blocks)); ++of_groups) {
+      float of_group[kGroup], of_block[kGroup];
+      setMargins(of_groups * kGroup, bounds_.groups(), obstacles_.groups, boundOf, most, of_group);
+      for (int g = 0; g < kGroup; ++g) {
+        if (!(of_group[g] > 0)) continue;
+        const int begin = (of_groups * kGroup + g) * kGroup;
+        setMargins(begin, bounds_.blocks(), obstacles_.blocks, boundOf, most, of_block);
+        for (int b = 0; b < kGroup; ++b) {
+          if (of_block[b] > 0) candidates_.push_back({of_block[b], begin + b});
+        }
       }
-      return largest;
-    };
-    const auto largestOfAll = [&](float raised_m) {
-      const float largest = largestOf(0, kCrossings, raised_m);
-      if (posts_.used(block) == kCrossings) return largest;
-      return std::max(largest, largestOf(kCrossings, kOfBlock, raised_m));
-    };
-    if (posts_.areRaised() && !posts_.isRaised(block)) {
-      const float cover_m = terrain_.cover_m()[block];
-      if (!(largestOfAll(cover_m) > most.value)) return;
-      if (!(cover_m < HUGE_VALF)) posts_.leave();
-      posts_.raise(block);
     }
-    const float largest = largestOfAll(0);
-    if (!(largest > most.value)) return;
-    bool is_bound = false;
-    for (unsigned left = posts_.areRaised() ? posts_.doubtful(block) : 0; left != 0; left &= left - 1) {
-      const int i = __builtin_ctz(left);
-      is_bound = is_bound || valueOf(range_m[i], height_m[i]) >= largest - kRounding * std::fabs(largest);
+    std::sort(candidates_.begin(), candidates_.end(),
+              [](const Candidate& a, const Candidate& b) { return a.margin > b.margin; });
+    for (const Candidate& candidate : candidates_) visitOnce(candidate.block);
+    unsigned unknown = 0;
+    for (int l = 0; l < kPathLanes; ++l) {
+      if (!most.isSearched(l)) continue;
+      if (most.block[l] >= 0) guess[l] = most.block[l];
+      if (most.is_bound[l] != 0) unknown |= 1u << l;
     }
-    most = {largest, block, is_bound};
+    if (unknown != 0) posts_.leave(unknown);
+  }
+  template <class BoundOf, class ValueOf>
+  void operator()(const BoundOf& boundOf, const ValueOf& valueOf, PathMaxima& most, int* guess) {
+    (*this)(boundOf, valueOf, most, guess, [] {});
   }
 
  private:
-  /// Visits those of kGroup blocks or groups whose bound exceeds the maximum, the farthest first.
-  /// @param count  of all blocks or groups
-  template <class BoundOf, class Visit>
-  void descend(int group, int count, const ObstacleBounds& bounds, const ObstacleRanges& ranges,
-               const BoundOf& boundOf, const Maximum& most, const Visit& visitOne) const {
+  struct Candidate {
+    float margin;
+    int block;
+  };
+
+  /// By how much the bounds of kGroup blocks or groups exceed the maximum of some path; not positive: of
+  /// none.
+  template <class BoundOf>
+  void setMargins(int begin, const ObstacleBounds& bounds, const ObstacleRanges& ranges,
+                  const BoundOf& boundOf, const PathMaxima& most, float* margin) const {
     constexpr int kGroup = SectorPosts::kGroup;
-    const int begin = group * kGroup;
     const float *const lowered_m = bounds.lowered_m.data() + begin, *const tx_slope =
                                                                         bounds.tx_slope.data() + begin;
     const float *const first_m = ranges.first_m.data() + begin, *const last_m = ranges.last_m.data() + begin;
-    const float least = most.value, farthest_m = posts_.path().last_m;
-    float bound[kGroup];
-    unsigned exceeds = 0;  // bit i: the bound of i exceeds the maximum
-#pragma omp simd reduction(| : exceeds)
-    for (int i = 0; i < kGroup; ++i) {
-      bound[i] =
-          boundOf(lowered_m[i], tx_slope[i], first_m[i], last_m[i] < farthest_m ? last_m[i] : farthest_m);
-      exceeds |= (bound[i] > least ? 1u : 0u) << i;
+    std::fill_n(margin, kGroup, 0.0f);
+    for (int l = 0; l < kPathLanes; ++l) {
+      if (!most.isSearched(l)) continue;
+      const float farthest_m = posts_.paths().last_m[l], value = most.value[l];
+#pragma omp simd
+      for (int i = 0; i < kGroup; ++i) {
+        const float end_m = last_m[i] < farthest_m ? last_m[i] : farthest_m;
+        const float over = boundOf(l, lowered_m[i], tx_slope[i], first_m[i], end_m) - value;
+        const float here = first_m[i] < farthest_m ? over : 0.0f;
+        margin[i] = here > margin[i] ? here : margin[i];
+      }
     }
-    if (count - begin < kGroup) exceeds &= (1u << (count - begin)) - 1;
-    while (exceeds != 0) {
-      const int i = 31 - __builtin_clz(exceeds);
-      exceeds &= ~(1u << i);
-      if (bound[i] > most.value) visitOne(begin + i);
+  }
+  template <class BoundOf>
+  bool mayExceed(int block, const BoundOf& boundOf, const PathMaxima& most) const {
+    const float lowered_m = bounds_.blocks().lowered_m[block], tx_slope = bounds_.blocks().tx_slope[block];
+    const float first_m = obstacles_.blocks.first_m[block], last_m = obstacles_.blocks.last_m[block];
+    const float* const farthest_m = posts_.paths().last_m;
+    int is_any = 0;
+#pragma omp simd reduction(| : is_any)
+    for (int l = 0; l < kPathLanes; ++l) {
+      const float end_m = last_m < farthest_m[l] ? last_m : farthest_m[l];
+      const bool exceeds = boundOf(l, lowered_m, tx_slope, first_m, end_m) > most.value[l];
+      is_any |= exceeds & (first_m < farthest_m[l]);
+    }
+    return is_any != 0;
+  }
+
+  template <class ValueOf>
+  void visit(int block, const ValueOf& valueOf, PathMaxima& most) {
+    posts_.read(block);
+    for (int n = 0; n < posts_.count(); ++n) {
+      const PathPosts::Slot& slot = posts_[n];
+      unsigned doubtful = 0;
+      if (posts_.areRaised()) {
+        const float cover_m = terrain_.cover_m()[block];
+        unsigned raised = 0;
+#pragma omp simd reduction(| : raised)
+        for (int l = 0; l < kPathLanes; ++l) {
+          const float highest = valueOf(l, slot.range_m[l], slot.height_m[l] + cover_m);
+          raised |= (highest > most.value[l] ? 1u : 0u) << l;
+        }
+        if (raised == 0) continue;
+        if (!(cover_m < HUGE_VALF)) posts_.leave(raised);
+        doubtful = posts_.raise(n, raised);
+      }
+#pragma omp simd
+      for (int l = 0; l < kPathLanes; ++l) {
+        const float value = valueOf(l, slot.range_m[l], slot.height_m[l]);
+        const bool is_more = value > most.value[l];
+        most.value[l] = is_more ? value : most.value[l];
+        most.block[l] = is_more ? block : most.block[l];
+        most.is_bound[l] = is_more ? static_cast<int>(doubtful >> l & 1) : most.is_bound[l];
+      }
     }
   }
 
@@ -133,6 +169,9 @@ class PathSearch {
   const SectorTerrain& terrain_;
   const SectorBounds& bounds_;
   PathPosts& posts_;
+  int number_ = 0;  ///< of the search
+  std::vector<Candidate> candidates_;
+  std::vector<int> visited_in_;  ///< per block: number of the last search that came to it
 };
 
 }  // namespace emscape::emfield

@@ -3,7 +3,8 @@
 /// Every pixel of a map has its own path, but the dominant obstacle is at a few of its posts. Paths of one
 /// narrow sector of azimuths are close to each other: heights along its middle and bounds of the slopes give
 /// bounds for all of them (SectorTerrain). Only blocks of posts that may contain a maximum according to these
-/// bounds are read. The losses equal those of DiffractionExcess: the same posts and formulas.
+/// bounds are read, of sixteen paths at a time, each in a vector lane. The losses equal those of
+/// DiffractionExcess: the same posts and formulas.
 #pragma once
 
 #include <vector>
