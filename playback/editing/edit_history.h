@@ -16,7 +16,9 @@ using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
 /// Any thread may call it. @throws Error (bad_input) as Scenario::set()
 ScenarioPtr edited(const ScenarioPtr& scenario, const std::vector<scenario::Edit>& edits);
 
-/// Every state is an immutable scenario, so that a solver may still read one that was undone. For one thread.
+/// Every state is an immutable scenario, so that a solver may still read one that was undone. The last 1000
+/// steps can be undone; of large scenarios fewer, as many as take about 64 MiB, but at least 10. For one
+/// thread.
 class EditHistory {
  public:
   /// @param scenario  not null
@@ -39,6 +41,8 @@ class EditHistory {
   /// Reverts to the state at the beginning of the drag.
   void cancelDrag() { stack_.cancelDrag(); }
 
+  /// As UndoStack::stepsBack().
+  std::size_t stepsBack() const { return stack_.stepsBack(); }
   /// As UndoStack::stepsMade().
   long long stepsMade() const { return stack_.stepsMade(); }
   bool canUndo() const { return stack_.canUndo(); }
@@ -54,6 +58,8 @@ class EditHistory {
   void markSaved() { saved_hash_ = scenario()->hash; }
 
  private:
+  void keepWithinMemory();
+
   UndoStack<ScenarioPtr> stack_;
   std::string saved_hash_;
 };

@@ -87,6 +87,8 @@ class TransferEditor {
   /// All changes until endDrag() are one step.
   void beginDrag() { stack_.beginDrag(); }
   void endDrag();
+  /// As UndoStack::stepsBack().
+  std::size_t stepsBack() const { return stack_.stepsBack(); }
   /// As UndoStack::stepsMade().
   long long stepsMade() const { return stack_.stepsMade(); }
   bool canUndo() const { return stack_.canUndo(); }

@@ -42,6 +42,12 @@ class UndoStack {
 
   /// Number of steps ever made. The owner of several stacks uses it to order their steps.
   long long stepsMade() const { return steps_made_; }
+  /// Number of steps that can be undone; an open drag is not counted.
+  std::size_t stepsBack() const { return past_.size(); }
+  /// Forgets the oldest steps, so that at most this many can be undone.
+  void keep(std::size_t steps) {
+    if (past_.size() > steps) past_.erase(past_.begin(), past_.end() - static_cast<std::ptrdiff_t>(steps));
+  }
   bool canUndo() const { return !past_.empty() || drag_; }
   bool canRedo() const { return !future_.empty() && !drag_; }
   /// Number of steps to another state, latest first: negative by undo(), positive by redo(); 0: there is
@@ -68,7 +74,7 @@ class UndoStack {
  private:
   void push(State before) {
     past_.push_back(std::move(before));
-    if (past_.size() > max_steps_) past_.erase(past_.begin());
+    keep(max_steps_);
     future_.clear();
     ++steps_made_;
   }

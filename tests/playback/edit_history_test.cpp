@@ -72,6 +72,29 @@ TEST(EditHistory, UndoAndRedoOfRandomEditsGiveTheSameTexts) {
   EXPECT_TRUE(history.isModified());
 }
 
+TEST(EditHistory, OfLargeScenariosFewerStepsAreKept) {
+  const TemporaryFolder folder;
+  std::string track = "t_s,latitude_deg,longitude_deg,height_msl_m\n";
+  for (int t_s = 0; t_s < 20000; ++t_s) track += fmt::format("{},52.05,5.06,{}\n", t_s, 1000 + t_s % 100);
+  folder.write("track.csv", track);
+  const std::string fixed = "position: {latitude_deg: 52.05, longitude_deg: 5.06, height_agl_m: 50}";
+  EditHistory small(scenario::loadScenario(quickScenario(folder)));
+  EditHistory large(scenario::loadScenario(quickScenario(folder, {{fixed, "track: {file: track.csv}"}})));
+  for (int n = 0; n < 60; ++n) {
+    for (EditHistory* history : {&small, &large}) {
+      history->beginDrag();
+      history->set("emitters.radar.power_w", fmt::format("{}", 1 + n));
+      history->endDrag();
+    }
+  }
+  EXPECT_EQ(small.stepsBack(), 60u);
+  EXPECT_GE(large.stepsBack(), 10u);
+  EXPECT_LE(large.stepsBack() * 20000 * sizeof(scenario::TrackPoint), std::size_t{64} << 20);
+  for (std::size_t n = large.stepsBack(); n > 0; --n) large.undo();
+  EXPECT_FALSE(large.canUndo());
+  EXPECT_TRUE(large.canRedo());
+}
+
 TEST(EditHistory, ADragIsOneStep) {
   const TemporaryFolder folder;
   EditHistory history(scenario::loadScenario(quickScenario(folder)));

@@ -1,6 +1,7 @@
 /// Undo across several histories, latest step first.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -14,12 +15,16 @@ enum class History { scenario, transfer, planes };
 class UndoOrder {
  public:
   /// @param steps_made  number of steps of this history so far; new ones are the latest of all
-  void note(History history, long long steps_made) {
+  /// @param steps_back  number of them that can be undone; older ones are forgotten
+  void note(History history, long long steps_made, std::size_t steps_back) {
     long long& noted = noted_[static_cast<std::size_t>(history)];
     for (; noted < steps_made; ++noted) {
       done_.push_back(history);
       undone_.clear();
     }
+    auto kept = static_cast<std::size_t>(std::count(done_.begin(), done_.end(), history));
+    const auto isForgotten = [&](History one) { return one == history && kept > steps_back && kept-- > 0; };
+    done_.erase(std::remove_if(done_.begin(), done_.end(), isForgotten), done_.end());
   }
   /// A history was reset: none of its steps can be undone or redone.
   void forget(History history) {

@@ -90,9 +90,9 @@ void Session::takeEdits() {
 }
 
 void Session::noteSteps() {
-  if (edits_) undo_order_.note(History::scenario, edits_->stepsMade());
-  if (transfer_) undo_order_.note(History::transfer, transfer_->stepsMade());
-  undo_order_.note(History::planes, planes_.stepsMade());
+  if (edits_) undo_order_.note(History::scenario, edits_->stepsMade(), edits_->stepsBack());
+  if (transfer_) undo_order_.note(History::transfer, transfer_->stepsMade(), transfer_->stepsBack());
+  undo_order_.note(History::planes, planes_.stepsMade(), planes_.stepsBack());
 }
 
 void Session::askUndo(bool undo) {
