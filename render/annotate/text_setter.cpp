@@ -23,8 +23,10 @@ constexpr const char* kFamilies =
 /// A language of which Pango knows nothing has every script; others send it to the locale for some scripts.
 constexpr const char* kLanguage = "xx";
 constexpr std::size_t kMaxLines = 4096;
-/// Pango starts so many threads for the first text of each font, and ends the program where one is refused.
-constexpr int kThreadsOfPango = 3;
+/// Threads of Pango at the same time, at most, for the first text of a font; it ends the program where one is
+/// refused: one that reads the configuration, and two each for the font and its fallbacks, of which those
+/// that are done may not have ended yet on a busy machine.
+constexpr int kThreadsOfPango = 5;
 /// Of them and their tables; the threads' stacks and heaps are addresses alone.
 constexpr std::size_t kFonts_bytes = std::size_t{96} << 20;
 
