@@ -250,13 +250,14 @@ fs::perms SeriesFiles::removeOld() const {
     return fs::path(name).extension() == ".vti" || fs::path(name).extension() == ".vtu";
   });
   if (had_index) ours.insert(nameOfOld(folder_).value_or(name_) + ".pvd");
+  const std::regex of_series = names();  // somebody else may have written the list
   const std::set<std::string> replaced = ownNames();
   std::vector<fs::path> files{folder_ / "series.json", folder_ / "series.steps"};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
     std::error_code ignored;  // as of a link to itself
     if (!entry.is_regular_file(ignored)) continue;
     const std::string name = entry.path().filename().string();
-    if (ours.count(name) != 0) {
+    if (ours.count(name) != 0 && std::regex_match(name, of_series)) {
       files.push_back(entry);
     } else if (isReadWithSeries(entry) && replaced.count(name) == 0) {
       throw Error(

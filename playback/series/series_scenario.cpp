@@ -27,7 +27,7 @@ std::string obstacleOf(const std::string& file, const std::vector<scenario::Edit
   if (!fs::exists(file, error))
     return error ? "cannot be reached: " + error.message() : "is not there any more";
   const auto found = scenario::parseScenario(file, edits).scenario;
-  if (!found || found->hash != state.recipe.value("scenario hash", "")) return "has changed since";
+  if (!found || state.recipe.value("scenario hash", Json()) != found->hash) return "has changed since";
   const std::vector<std::string> files = scenario::filesOf(*found);
   const auto missing = std::find_if(files.begin(), files.end(),
                                     [&](const std::string& name) { return !fs::exists(name, error); });

@@ -43,6 +43,15 @@ TEST_F(OwnSeries, IsDrawnWithoutAScenarioThatWasChangedOrRemoved) {
   EXPECT_EQ(viewOf(folder_ / "out").scenario, "");
 }
 
+TEST_F(OwnSeries, AStateOfOtherTypesIsDrawnWithoutItsScenario) {
+  const std::string state = folder_ / "out/series.json", text = readFile(state);
+  for (const std::string value : {"7", "null", "[]", "{}"}) {
+    const std::size_t begin = text.find(':', text.find("\"scenario hash\"")) + 1;
+    writeFile(state, text.substr(0, begin) + value + text.substr(text.find(',', begin)));
+    EXPECT_EQ(viewOf(folder_ / "out").scenario, "") << value;
+  }
+}
+
 TEST_F(OwnSeries, AVolumeOfAnotherProgramInItsFolderHasNoScenario) {
   const std::string other = folder_.write("out/other.vti", "");
   EXPECT_EQ(viewOf(other).scenario, "");

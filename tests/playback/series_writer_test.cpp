@@ -330,6 +330,20 @@ TEST_F(SeriesWriter, ReplacingKeepsFilesThatTheSeriesDidNotWrite) {
   EXPECT_THAT(contents("s"), testing::Contains(testing::Pair("quick_0001_before.raw", "mine")));
 }
 
+TEST_F(SeriesWriter, ReplacingKeepsFilesThatAForeignRecordNames) {
+  write(1, into("s", {"raw"}));
+  std::string record = readFile(*this / "s/series.steps"), listed;
+  const std::string names[] = {"thesis.txt", "photo_0001.png", "../outside_0001.raw"};
+  for (const std::string& name : names) {
+    writeFile(*this / "s/" + name, "mine");
+    listed += R"({"name":")" + name + R"(","bytes":4,"crc32":1},)";
+  }
+  const std::string list = R"("files":[)";
+  writeFile(*this / "s/series.steps", record.insert(record.find(list) + list.size(), listed));
+  write(1, into("s", {"raw"}, Existing::replace));
+  for (const std::string& name : names) EXPECT_EQ(readFile(*this / "s/" + name), "mine") << name;
+}
+
 TEST_F(SeriesWriter, ReplacingRefusesVolumesThatWouldBeReadWithTheSeries) {
   write(2, into("s", {"vti"}));
   const std::map<std::string, std::string> before = contents("s");
