@@ -19,7 +19,7 @@ import tempfile
 from pathlib import Path
 
 # What each subcommand needs; {q}: a scenario, {l}: one with links, {v}: a series of volumes, {t}: elevations, {r}: a recording,
-# {w}: a script of the window, {o}: an output.
+# {w}: a script of the window, {s}: a study, {m}: measured paths, {o}: an output.
 BASE = {
     "simulate": "simulate {q} -o {o}/s --set region.dims=[8,8,4] --set duration_s=1",
     "render": "render {q} -o {o}/a.png --size 64x48 --times 0 --set region.dims=[8,8,4]",
@@ -35,6 +35,8 @@ BASE = {
     "blockage": "blockage {l} --emitter mast --beamwidth 2 --elevation 0 --range 9000 -o {o}/b.nc",
     "import": "import {r} --emitters {r}.emitters.yaml -o {o}/i.yaml",
     "export": "export {q} -o {o}/e.czml",
+    "study": "study {s} -o {o}/st --set region.dims=[8,8,4]",
+    "check": "check {m} --scenario {q}",
     "view": "view {q} --backend cpu --script {w}",
 }
 # Global options, those that wait for a network or a person, and those that start other machinery.
@@ -70,10 +72,25 @@ ODD = ["{}", "[]", "null", "1e400", "[1, 2, 3]", "[[0, 1]]", "{kind: raster, bar
 OPTION = re.compile(r"^  +(?:-\w,\s*)?(--[a-z0-9-]+)((?: (?:TEXT|FLOAT|INT|UINT))?(?::\{[^}]*\})?)", re.MULTILINE)
 INSIDE = re.compile(r"std::|terminate called|what\(\)|\.cpp\b|_ZN|pthread|SQLite|basic_string|vector::|bad_alloc|json\.exception|\bassert", re.I)
 TIME_LIMIT_S = 60
+STOP_LIMIT_S = 5
+STUDY = """schema_version: 1
+name: pairs
+scenario: scenarios/quick.yaml
+times: 0
+cell_m: 4000
+sweep: {emitters.radar.power_w: {values: [1, 10, 100]}}
+measures: [{name: covered, product: covered, height: "agl:300"}]
+"""
+PATHS_MEASURED = """transmitter_latitude_deg,transmitter_longitude_deg,transmitter_height_agl_m,receiver_latitude_deg,receiver_longitude_deg,receiver_height_agl_m,frequency_mhz,loss_db
+52,5,20,52.05,5.06,10,100,110
+52,5,20,52.1,5.06,10,100,120
+"""
 
 
 def is_unfinished_record(path):
-    """True for the record by which a series is continued with --resume."""
+    """True for the record by which a series or a study is continued with --resume."""
+    if path.name == "manifest.json":
+        return True
     return path.name == "series.json" and '"complete": false' in path.read_text()
 
 
@@ -111,6 +128,22 @@ def faults_of(done, folder):
         yield f"left {', '.join(left[:3])}"
 
 
+def ended(command, folder):
+    """The process of the command, ended, and whether it was stopped because it took too long."""
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", cwd=folder) as process:
+        try:
+            stdout, stderr = process.communicate(timeout=TIME_LIMIT_S)
+            return subprocess.CompletedProcess(command, process.returncode, stdout, stderr), False
+        except subprocess.TimeoutExpired:
+            process.terminate()
+        try:
+            stdout, stderr = process.communicate(timeout=STOP_LIMIT_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            stdout, stderr = process.communicate()
+        return subprocess.CompletedProcess(command, process.returncode, stdout, stderr), True
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("emscape")
@@ -126,7 +159,9 @@ def main():
         shutil.copytree(given.scenarios, scenarios)
         names = {"q": scenarios / "quick.yaml", "l": scenarios / "links.yaml", "v": work / "volumes",
                  "t": scenarios / "data" / "jacksboro.tif", "r": scenarios / "recordings" / "jamming.pcap", "w": work / "script.jsonl",
-                 "o": "{o}"}
+                 "s": work / "study.yaml", "m": work / "paths.csv", "o": "{o}"}
+        names["s"].write_text(STUDY)
+        names["m"].write_text(PATHS_MEASURED)
         names["w"].write_text('{"do": "wait_frame"}\n{"do": "quit", "edits": "discard"}\n')
         subprocess.run([given.emscape, "-q", *BASE["simulate"].format(**{**names, "o": work}).split()], check=True)
         (work / "s").rename(work / "volumes")
@@ -147,12 +182,9 @@ def main():
                     for key, path in names.items():
                         word = word.replace("{" + key + "}", str(out if key == "o" else path))
                     command.append(word)
-                try:
-                    done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=TIME_LIMIT_S, cwd=out)
-                    faults = list(faults_of(done, out))
-                    statuses[done.returncode] = statuses.get(done.returncode, 0) + 1
-                except subprocess.TimeoutExpired:
-                    faults = [f"not within {TIME_LIMIT_S} s"]
+                done, stopped = ended(command, out)
+                statuses[done.returncode] = statuses.get(done.returncode, 0) + 1
+                faults = list(faults_of(done, out)) if not stopped else [f"not within {TIME_LIMIT_S} s, then status {done.returncode}"]
                 for fault in faults:
                     failed += 1
                     print(f"{fault}: {' '.join(word if len(word) < 200 else word[:20] + '...' for word in command[1:])}", flush=True)
