@@ -8,6 +8,7 @@
 
 #include "apps/bench/paper_transfer.h"
 #include "apps/common/interrupt.h"
+#include "base/files/inputs.h"
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
@@ -103,8 +104,7 @@ BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& gl
       renderer_(target.rendererOptions()) {
   renderer_.setSettings(settingsOf(options));
   playback::FrameSelection selection = options.selection;
-  if (std::filesystem::exists(selection.input) &&
-      playback::inputKindOf(selection.input) == playback::InputKind::mesh)
+  if (inputExists(selection.input) && playback::inputKindOf(selection.input) == playback::InputKind::mesh)
     throw Error(ErrorCode::usage, selection.input + " is a field on tetrahedra; use emscape bench cells");
   selection.first_only = selection.times.empty();
   const std::unique_ptr<playback::FrameSource> source =

@@ -10,6 +10,7 @@
 #include "apps/common/interrupt.h"
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/subcommands.h"
+#include "base/files/inputs.h"
 #include "emfield/excess/clutter_text.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -94,12 +95,12 @@ int checkPaths(const CheckOptions& options, const GlobalOptions& global) {
 }
 
 int check(const CheckOptions& options, const GlobalOptions& global) {
-  const bool is_folder = std::filesystem::is_directory(options.data);
+  const bool exists = inputExists(options.data);
+  const bool is_folder = exists && std::filesystem::is_directory(options.data);
   if (is_folder && options.isForPaths())
     throw Error(ErrorCode::usage, "options of measured paths are given, but '" + options.data +
                                       "' is a folder; a table of measured paths is a file");
-  return is_folder || !std::filesystem::exists(options.data) ? checkFigures(options.data, global)
-                                                             : checkPaths(options, global);
+  return is_folder || !exists ? checkFigures(options.data, global) : checkPaths(options, global);
 }
 
 }  // namespace

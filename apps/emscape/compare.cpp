@@ -14,6 +14,7 @@
 #include "apps/common/target.h"
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/subcommands.h"
+#include "base/files/inputs.h"
 #include "base/text/quantity_text.h"
 #include "emfield/excess/clutter_text.h"
 #include "emscape/base/log.h"
@@ -173,7 +174,7 @@ int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
 
 int compare(const CompareCommand& command, const GlobalOptions& global) {
   for (const std::string& read : {command.a, command.b}) {
-    if (!read.empty() && !std::filesystem::exists(read))
+    if (!read.empty() && !inputExists(read))
       throw Error(ErrorCode::bad_input, {read, 0, 0}, "there is no such file or folder");
   }
   const bool is_folder = std::filesystem::is_directory(command.a);

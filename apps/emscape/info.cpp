@@ -10,6 +10,7 @@
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
 #include "apps/emscape/subcommands.h"
+#include "base/files/inputs.h"
 #include "base/files/json_writing.h"
 #include "emfield/excess/model_choices.h"
 #include "emscape/base/log.h"
@@ -339,8 +340,7 @@ std::string valuesFileOf(const std::string& file) {
 Description describe(const std::string& name) {
   const std::string file = valuesFileOf(name);
   // The readers of some kinds would wait for the other end of a pipe.
-  if (std::filesystem::exists(file) && !std::filesystem::is_directory(file) &&
-      !std::filesystem::is_regular_file(file))
+  if (inputExists(file) && !std::filesystem::is_directory(file) && !std::filesystem::is_regular_file(file))
     throw Error(ErrorCode::bad_input, {file, 0, 0}, "cannot read: it is not a regular file");
   if (scenario::isSoundingFile(file) || scenario::isRefractivityCsv(file)) return describeRefractivity(file);
   switch (playback::inputKindOf(file)) {

@@ -13,6 +13,7 @@
 #include "apps/common/target.h"
 #include "apps/common/view_arguments.h"
 #include "apps/emscape/subcommands.h"
+#include "base/files/inputs.h"
 #include "base/memory.h"
 #include "base/stopwatch.h"
 #include "base/worker.h"
@@ -110,8 +111,8 @@ std::string raysOf(const ViewState& view) {
 }
 
 bool drawsTetrahedra(const ViewState& view) {
-  return !view.mesh.empty() || (std::filesystem::exists(view.input) &&
-                                playback::inputKindOf(view.input) == playback::InputKind::mesh);
+  return !view.mesh.empty() ||
+         (inputExists(view.input) && playback::inputKindOf(view.input) == playback::InputKind::mesh);
 }
 
 /// @throws Error (usage) for options without an effect on what is drawn
@@ -147,14 +148,14 @@ void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
                                         {"the transfer function", view.transfer_file}};
   std::vector<std::shared_ptr<const scenario::Scenario>> scenarios;
   const auto addSteps = [&](const std::string& file, const char* name) {
-    if (!std::filesystem::exists(file)) return;
+    if (!inputExists(file)) return;
     const playback::InputKind kind = playback::inputKindOf(file);
     if (kind != playback::InputKind::volume && kind != playback::InputKind::mesh) return;
     for (const std::filesystem::path& step : playback::stepFilesOf(file))
       inputs.push_back({name, step.string()});
   };
   const auto addScenario = [&](const std::string& file, const std::vector<scenario::Edit>& edits) {
-    if (!std::filesystem::is_regular_file(file)) return;
+    if (!inputExists(file) || !std::filesystem::is_regular_file(file)) return;
     // --scenario is a scenario whatever its ending.
     if (file != view.scenario && playback::inputKindOf(file) != playback::InputKind::scenario) return;
     if (const auto scenario = scenario::parseScenario(file, edits).scenario) scenarios.push_back(scenario);
@@ -248,7 +249,7 @@ Stage openStage(const ViewState& view, const RenderOptions& options, const Globa
 /// Warns about a scenario's field without any value.
 void warnOfNoValue(const ViewState& view, const Stage& stage) {
   const playback::LoadedScenario* scene = stage.source->scene();
-  const bool is_computed = scene != nullptr && std::filesystem::exists(view.input) &&
+  const bool is_computed = scene != nullptr && inputExists(view.input) &&
                            playback::inputKindOf(view.input) == playback::InputKind::scenario;
   if (stage.empty_quantity.empty() || !is_computed || !view.compare.empty()) return;
   std::vector<double> times_s;

@@ -9,6 +9,7 @@
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
 #include "apps/emscape/subcommands.h"
+#include "base/text/readable_text.h"
 #include "emfield/excess/model_choices.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/work.h"
@@ -168,14 +169,15 @@ int validate(const ValidateCommand& command, const GlobalOptions& global) {
                {"work", work ? report::workJson(*work) : Json(nullptr)}});
   } else {
     for (const Problem& problem : result.problems) {
-      print("{}: {}: {}\n", emscape::toString(problem.location), toString(problem.severity), problem.message);
+      print("{}: {}: {}\n", readableText(emscape::toString(problem.location)), toString(problem.severity),
+            problem.message);
     }
     if (ok && !global.quiet) {
       if (!air.empty()) print("air: {}\n", air);
       for (const emfield::EmitterChoice& choice : choices)
         print("emitter '{}': {}: {} {}\n", choice.emitter, choice.model, choice.name, choice.text);
       if (work) print("{}\n", report::workText(*work));
-      print("{}: ok\n", file);
+      print("{}: ok\n", readableText(file));
     }
   }
   return ok ? 0 : static_cast<int>(status);

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "base/files/descriptor.h"
+#include "base/files/inputs.h"
 #include "base/large_array.h"
 #include "emscape/base/error.h"
 
@@ -20,9 +21,9 @@ Bytes readAll(const fs::path& path, std::uintmax_t max_bytes) {
   const auto fail = [&](const std::string& cause) {
     throw Error(ErrorCode::bad_input, {path.string()}, cause);
   };
+  if (!inputExists(path)) fail("there is no such file");
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) fail("there is no such file");
   if (fs::is_directory(status)) fail("cannot read: it is a folder");
   if (!fs::is_regular_file(status)) fail("cannot read: it is not a regular file");
   errno = 0;
@@ -48,6 +49,24 @@ Bytes readAll(const fs::path& path, std::uintmax_t max_bytes) {
 }
 
 }  // namespace
+
+bool inputExists(const fs::path& path) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  if (status.type() == fs::file_type::none)
+    throw Error(ErrorCode::bad_input, {path.string()}, "cannot read: " + failure.message());
+  return fs::exists(status);
+}
+
+std::vector<fs::directory_entry> entriesOf(const fs::path& folder) {
+  std::error_code failure;
+  std::vector<fs::directory_entry> entries;
+  for (fs::directory_iterator at(folder, failure); !failure && at != fs::directory_iterator();
+       at.increment(failure))
+    entries.push_back(*at);
+  if (failure) throw Error(ErrorCode::bad_input, {folder.string()}, "cannot read: " + failure.message());
+  return entries;
+}
 
 std::vector<std::uint8_t> readWhole(const fs::path& path, std::uintmax_t max_bytes) {
   return readAll<std::vector<std::uint8_t>>(path, max_bytes);

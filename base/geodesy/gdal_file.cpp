@@ -49,6 +49,7 @@ std::string localName(const fs::path& file) {
 std::string faultOfName(const fs::path& file) {
   std::error_code failed;
   const fs::file_status status = fs::status(file, failed);
+  if (status.type() == fs::file_type::none) return failed.message();
   if (!fs::exists(status)) return "no such file";
   if (!fs::is_regular_file(status)) return "not a regular file";
   // A folder /vsi... of the disk cannot be told from a virtual file system of GDAL.

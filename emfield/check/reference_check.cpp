@@ -7,6 +7,7 @@
 #include <limits>
 #include <set>
 
+#include "base/files/inputs.h"
 #include "emfield/check/datasets.h"
 #include "emscape/base/error.h"
 
@@ -88,14 +89,14 @@ ReferenceFolder lookBelow(const fs::path& root, const std::string& only) {
     known.insert(dataset.name);
     if (!family.empty()) known.insert(family);
     if (!family.empty() && fs::is_directory(root / family)) families.insert(family);
-    if (fs::exists(root / dataset.name)) {
+    if (inputExists(root / dataset.name)) {
       found.present.push_back(&dataset);
     } else {
       found.absent.push_back(dataset.name);
     }
   }
   if (only.empty()) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(root)) {
+    for (const fs::directory_entry& entry : entriesOf(root)) {
       const std::string name = entry.path().filename().string();
       // top-level files, such as a README, are not datasets
       std::error_code ignored;  // as of a link to itself
@@ -103,7 +104,7 @@ ReferenceFolder lookBelow(const fs::path& root, const std::string& only) {
     }
   }
   for (const std::string& family : families) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(root / family)) {
+    for (const fs::directory_entry& entry : entriesOf(root / family)) {
       const std::string name = family + "/" + entry.path().filename().string();
       if (known.count(name) == 0 && entry.path().filename() != "README.md") found.unknown.push_back(name);
     }
@@ -115,7 +116,7 @@ ReferenceFolder lookBelow(const fs::path& root, const std::string& only) {
 }  // namespace
 
 ReferenceFolder findDatasets(const fs::path& folder) {
-  if (!fs::is_directory(folder)) {
+  if (!inputExists(folder) || !fs::is_directory(folder)) {
     throw Error(ErrorCode::bad_input, fmt::format("{}: no such folder", folder.string()));
   }
   ReferenceFolder found = lookBelow(folder, "");

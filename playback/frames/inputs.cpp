@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/files/file_reading.h"
+#include "base/files/inputs.h"
 #include "emscape/base/error.h"
 #include "emscape/base/work.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -37,7 +38,7 @@ std::string lowerCase(std::string text) {
 }  // namespace
 
 InputKind inputKindOf(const std::string& file) {
-  if (!fs::exists(file)) throw Error(ErrorCode::bad_input, {file, 0, 0}, "no such file or folder");
+  if (!inputExists(file)) throw Error(ErrorCode::bad_input, {file, 0, 0}, "no such file or folder");
   if (holdsMeshes(file)) return InputKind::mesh;
   if (fs::is_directory(file)) return InputKind::volume;
   const std::string ending = lowerCase(fs::path(file).extension().string());

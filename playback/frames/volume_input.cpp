@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "base/files/inputs.h"
 #include "base/text/utc.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/clock.h"
@@ -68,7 +69,7 @@ std::vector<volume::SeriesStep> meshesOf(const fs::path& path) {
   if (path.extension() == ".pvd") return volume::seriesSteps(path);
   if (!fs::is_directory(path)) return {{path, std::nullopt}};
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+  for (const fs::directory_entry& entry : entriesOf(path)) {
     std::error_code ignored;  // as of a link to itself
     if (entry.is_regular_file(ignored) && volume::isMeshFile(entry.path())) files.push_back(entry.path());
   }
@@ -101,7 +102,7 @@ bool holdsMeshes(const fs::path& path) {
   }
   if (!fs::is_directory(path)) return false;
   bool has_meshes = false;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+  for (const fs::directory_entry& entry : entriesOf(path)) {
     if (volume::isVolumeFile(entry.path())) return false;
     has_meshes = has_meshes || volume::isMeshFile(entry.path());
   }
@@ -121,7 +122,7 @@ std::string otherFormatsText(const fs::path& path) {
   const std::vector<fs::path> shown = stepFilesOf(path);
   std::set<std::string> stems, others;
   for (const fs::path& file : shown) stems.insert(file.stem().string());
-  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+  for (const fs::directory_entry& entry : entriesOf(path)) {
     const fs::path file = entry.path();
     const bool is_other = volume::isVolumeFile(file) && file.extension() != shown.front().extension() &&
                           stems.count(file.stem().string()) == 0;

@@ -10,6 +10,7 @@
 
 #include "base/files/file_digest.h"
 #include "base/files/file_reading.h"
+#include "base/files/inputs.h"
 #include "base/files/json_reading.h"
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
@@ -147,7 +148,7 @@ CoverageFolder openCoverageFolder(const fs::path& path) {
   folder.path = path;
   const fs::path report = path / "report.json", study = path / "study.json";
   for (const fs::path& file : {report, study}) {
-    if (!fs::is_regular_file(file)) {
+    if (!inputExists(file) || !fs::is_regular_file(file)) {
       fail(file, "there is no such file: not a folder written by emscape coverage, or incomplete");
     }
   }

@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.h"
@@ -94,10 +96,56 @@ int statusOf(const std::string& arguments_and_redirections) {
 
 TEST(CommandLine, AVeryLongFileNameGivesAReadableError) {
   const ProgramResult result = run({"info", std::string(5000, 'a') + "_2x2x2_uint8.raw"});
-  EXPECT_NE(result.status, 0);
-  EXPECT_THAT(result.err, HasSubstr(": File name too long"));
+  EXPECT_EQ(result.status, kBadInput);
+  EXPECT_THAT(result.err, HasSubstr(": cannot read: File name too long"));
   EXPECT_THAT(result.err, ::testing::Not(HasSubstr("filesystem error")));
   EXPECT_LT(result.err.size(), 1000u);
+}
+
+TEST(CommandLine, AnInputThatCannotBeReachedIsBadInputOfEverySubcommand) {
+  const TemporaryFolder folder;
+  const std::string loop = folder / "loop.yaml", too_long = std::string(300, 'a') + ".yaml",
+                    out = folder / "x";
+  std::filesystem::create_symlink("loop.yaml", loop);
+  for (const auto& [input, cause] :
+       {std::pair(loop, "Too many levels of symbolic links"), std::pair(too_long, "File name too long")}) {
+    for (const Arguments& arguments :
+         {Arguments{"info", input}, Arguments{"simulate", input, "-o", out},
+          Arguments{"study", input, "--plan"}, Arguments{"render", input, "-o", out + ".png"},
+          Arguments{"coverage", input, "-o", out}, Arguments{"compare", input, quick(), "-o", out},
+          Arguments{"check", input}, Arguments{"terrain", input},
+          Arguments{"import", input, "-o", out + ".yaml"}, Arguments{"bench", "field", input},
+          Arguments{"render", quick(), "--compare", input, "-o", out + ".png"},
+          Arguments{"render", quick(), "--state", input, "-o", out + ".png"}}) {
+      EXPECT_THAT(errorOfRun(arguments, kBadInput), HasSubstr(cause)) << arguments[0];
+    }
+    EXPECT_THAT(run({"validate", input}).out, HasSubstr(cause));
+  }
+  for (const char* ending : {"", ".png", ".yaml"}) EXPECT_FALSE(std::filesystem::exists(out + ending));
+}
+
+TEST(CommandLine, AFolderThatMayNotBeReadIsBadInput) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may read every folder";
+  const TemporaryFolder folder;
+  const std::string closed = folder / "closed", inside = closed + "/a.yaml", out = folder / "x.png";
+  std::filesystem::create_directory(closed);
+  std::filesystem::permissions(closed, std::filesystem::perms::none);
+  for (const Arguments& arguments :
+       {Arguments{"info", closed}, Arguments{"info", inside}, Arguments{"render", closed, "-o", out},
+        Arguments{"render", inside, "-o", out}, Arguments{"compare", closed, closed, "-o", folder / "x"},
+        Arguments{"check", closed}, Arguments{"terrain", closed}, Arguments{"study", inside, "--plan"}}) {
+    EXPECT_THAT(errorOfRun(arguments, kBadInput), HasSubstr("Permission denied")) << arguments[0];
+  }
+  std::filesystem::permissions(closed, std::filesystem::perms::owner_all);
+}
+
+TEST(CommandLine, ControlCharactersOfAFilesNameDoNotReachTheTerminal) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "\033[31mred.yaml";
+  std::filesystem::copy(quick(), file);
+  EXPECT_THAT(runWell({"validate", file}).out, HasSubstr("?[31mred.yaml: ok"));
+  folder.write("\033[31mred.yaml", "schema_version: 1\n");
+  EXPECT_THAT(run({"validate", file}).out, HasSubstr("?[31mred.yaml:1:1: error"));
 }
 
 TEST(CommandLine, AnOptionWithoutItsValueIsNamed) {

@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "base/files/inputs.h"
 #include "volume/format/raw.h"
 #include "volume/format/vdb.h"
 #include "volume/nvdb/nvdb.h"
@@ -109,7 +110,7 @@ std::vector<fs::path> sorted(std::vector<fs::path> files) {
 std::vector<fs::path> filesOfFolder(const fs::path& folder) {
   for (const Format& format : formats()) {
     std::vector<fs::path> files;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    for (const fs::directory_entry& entry : entriesOf(folder)) {
       std::error_code ignored;  // as of a link to itself
       if (entry.is_regular_file(ignored) && findFormat(entry.path()) == &format)
         files.push_back(entry.path());
@@ -122,12 +123,11 @@ std::vector<fs::path> filesOfFolder(const fs::path& folder) {
 /// The files in the folder of a numbered one that differ from it only in the number.
 std::vector<fs::path> numberedFiles(const fs::path& path) {
   requireFormat(path);
-  if (!fs::exists(path)) throw Error(ErrorCode::bad_input, {path.string()}, "there is no such file");
+  if (!inputExists(path)) throw Error(ErrorCode::bad_input, {path.string()}, "there is no such file");
   const SeriesName own(path);
   if (own.number < 0) return {path};
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry :
-       fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".")) {
+  for (const fs::directory_entry& entry : entriesOf(path.has_parent_path() ? path.parent_path() : ".")) {
     const SeriesName name(entry.path());
     const bool sibling =
         entry.path().extension() == path.extension() && name.base == own.base && name.number >= 0;

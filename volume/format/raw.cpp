@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/files/file_reading.h"
+#include "base/files/inputs.h"
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
 #include "emscape/volume/statistics.h"
@@ -79,7 +80,8 @@ Described describeByLayout(const fs::path& path, const RawLayout& layout) {
 }
 
 Described describe(const fs::path& path) {
-  if (fs::exists(sidecarOf(path))) return describeByHeader(sidecarOf(path));
+  std::error_code ignored;  // the name of the header may be too long
+  if (fs::exists(sidecarOf(path), ignored)) return describeByHeader(sidecarOf(path));
   const std::optional<RawLayout> layout = rawLayoutFromName(path);
   if (!layout) {
     throw Error(ErrorCode::bad_input, {path.string()},
@@ -91,7 +93,7 @@ Described describe(const fs::path& path) {
 
 Described describeDatFile(const fs::path& path) {
   // A stream would wait for the other end of a pipe.
-  if (fs::exists(path) && !fs::is_regular_file(path))
+  if (inputExists(path) && !fs::is_regular_file(path))
     throw Error(ErrorCode::bad_input, {path.string()}, "cannot read: it is not a regular file");
   std::ifstream stream(path, std::ios::binary);
   std::uint8_t head[6] = {};
