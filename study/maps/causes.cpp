@@ -1,6 +1,7 @@
 #include "study/maps/causes.h"
 
 #include <cmath>
+#include <mutex>
 #include <optional>
 
 #include "emfield/link/path_decision.h"
@@ -58,7 +59,8 @@ std::vector<float> causesOf(const MapGrid& grid, const CoverageRequest& request,
                             const std::shared_ptr<const scenario::Scenario>& scenario,
                             const scenario::Terrain* terrain, const MapHeight& height, double time_s,
                             const std::vector<PixelAnswer>& answers,
-                            const std::function<bool(std::size_t)>& isCovered) {
+                            const std::function<bool(std::size_t)>& isCovered,
+                            const std::function<void(double)>& progress) {
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain, time_s);
   const auto causeOfPixel = [&](std::size_t p) {
     if (answers[p] != PixelAnswer::exact && answers[p] != PixelAnswer::bound) return NAN;
@@ -75,11 +77,23 @@ std::vector<float> causesOf(const MapGrid& grid, const CoverageRequest& request,
     return cause ? static_cast<float>(*cause) : NAN;
   };
   std::vector<float> causes(grid.pixels());
+  const auto pixels = static_cast<double>(grid.pixels());
+  std::mutex mutex;
+  double done = 0, told = 0;
+  const auto add = [&](int count) {
+    constexpr double kInterval = 0.01;
+    const std::lock_guard lock(mutex);
+    done += count;
+    if (done / pixels < told + kInterval) return;
+    told = done / pixels;
+    progress(told);
+  };
   parallelFor(static_cast<int>(grid.pixels()), 16, [&](int begin, int end) {
     for (int p = begin; p < end; ++p) {
       checkpoint();
       causes[p] = causeOfPixel(static_cast<std::size_t>(p));
     }
+    add(end - begin);
   });
   return causes;
 }

@@ -26,10 +26,12 @@ std::optional<emfield::PathCause> causeAt(const scenario::Snapshot& snapshot, sc
 /// positions to which no emitter has a path.
 /// @param scenario   with radars that look at targets, as the map's
 /// @param isCovered  of a position, by the map of all emitters
+/// @param progress   gets the completed fraction, 0..1, from one thread at a time
 std::vector<float> causesOf(const MapGrid& grid, const CoverageRequest& request,
                             const std::shared_ptr<const scenario::Scenario>& scenario,
                             const scenario::Terrain* terrain, const MapHeight& height, double time_s,
                             const std::vector<PixelAnswer>& answers,
-                            const std::function<bool(std::size_t)>& isCovered);
+                            const std::function<bool(std::size_t)>& isCovered,
+                            const std::function<void(double)>& progress);
 
 }  // namespace emscape::study

@@ -338,10 +338,14 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     at_targets.push_back(atTargets(*scenario, requests.front().quantity));
   }
   const std::size_t fields = impl_->references.size() + (impl_->least_heights ? 1 : 0);
-  const auto steps = static_cast<double>(times_s.size() * scenarios.size() * fields);
+  std::size_t causes = 0;
+  for (const Impl::OfReference& of : impl_->references) {
+    for (const SurfaceMaps& maps : of.maps) causes += maps.causeMaps();
+  }
+  const auto steps = static_cast<double>(times_s.size() * scenarios.size() * (fields + causes));
   double done = 0;
-  const auto step = [&] {
-    if (progress) progress("maps", done++ / steps);
+  const auto tell = [&](double more) {
+    if (progress) progress("maps", (done + more) / steps);
   };
   for (Impl::OfReference& of : impl_->references) {
     for (SurfaceMaps& maps : of.maps) maps.begin(scenarios.size());
@@ -353,14 +357,17 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
         return [&take, s, r](CoverageMap map) { take(s, r, std::move(map)); };
       };
       for (Impl::OfReference& of : impl_->references) {
-        step();
+        tell(0);
         const SurfaceValues values = of.field.at(at_targets[s], terrain, time_s);
+        ++done;
         addOnce(of_fields[s], of.field.warnings());
-        for (std::size_t r = 0; r < requests.size(); ++r)
-          of.maps[r].addTime(s, at_targets[s], values, time_s, takeOf(r));
+        for (std::size_t r = 0; r < requests.size(); ++r) {
+          of.maps[r].addTime(s, at_targets[s], values, time_s, takeOf(r), tell);
+          done += static_cast<double>(of.maps[r].causeMaps());
+        }
       }
       if (!impl_->least_heights) continue;
-      step();
+      tell(0);
       std::vector<std::vector<float>> least_m = impl_->least_heights->compute(at_targets[s], terrain, time_s);
       for (std::size_t n = 0; n < least_m.size(); ++n) {
         const std::size_t r = impl_->with_least[n];
@@ -377,6 +384,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
         setValues(map, impl_->grid, std::move(least_m[n]));
         takeOf(r)(std::move(map));
       }
+      ++done;
     }
   }
   std::vector<std::vector<std::string>> warnings(scenarios.size());

@@ -212,9 +212,16 @@ void SurfaceMaps::begin(std::size_t scenarios) {
   }
 }
 
+std::size_t SurfaceMaps::causeMaps() const {
+  const std::vector<Product>& products = request_.products;
+  return std::find(products.begin(), products.end(), Product::cause) == products.end() ? 0 : layers_.size();
+}
+
 void SurfaceMaps::addTime(std::size_t index, const std::shared_ptr<const scenario::Scenario>& scenario,
-                          const SurfaceValues& values, double time_s, const MapSink& take) {
+                          const SurfaceValues& values, double time_s, const MapSink& take,
+                          const std::function<void(double)>& progress) {
   State& state = states_[index];
+  double causes = 0;
   state.scenario = scenario;
   state.answers.resize(isOverTime(request_) ? layers_.size() : 0);
   for (std::size_t n = 0; n < layers_.size(); ++n) {
@@ -240,9 +247,12 @@ void SurfaceMaps::addTime(std::size_t index, const std::shared_ptr<const scenari
         std::replace(of_product.begin(), of_product.end(), PixelAnswer::bound, PixelAnswer::unknown);
       std::vector<float> shown =
           product == Product::cause
-              ? causesOf(grid_, request_, scenario, values.terrain.get(), layers_[n].height, time_s,
-                         of_product, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); })
+              ? causesOf(
+                    grid_, request_, scenario, values.terrain.get(), layers_[n].height, time_s, of_product,
+                    [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); },
+                    [&](double fraction) { progress(causes + fraction); })
               : valuesOf(product, values, k, of_product, map.floor);
+      causes += product == Product::cause;
       setAnswers(map, std::move(of_product), shown);
       setValues(map, grid_, std::move(shown));
       take(std::move(map));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -79,9 +80,13 @@ class SurfaceMaps {
 
   /// Begins with a number of scenarios.
   void begin(std::size_t scenarios);
+  /// Maps `cause` of a scenario at a time, which are computed path by path.
+  std::size_t causeMaps() const;
   /// The maps of a scenario, by its index, at the next time.
+  /// @param progress  gets the number of completed maps `cause`, 0..causeMaps()
   void addTime(std::size_t index, const std::shared_ptr<const scenario::Scenario>& scenario,
-               const SurfaceValues& values, double time_s, const MapSink& take);
+               const SurfaceValues& values, double time_s, const MapSink& take,
+               const std::function<void(double)>& progress);
   /// The maps of a scenario over all times.
   void finish(std::size_t index, const MapSink& take);
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <GeographicLib/UTMUPS.hpp>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -415,6 +416,30 @@ TEST(Coverage, MinHeightIsLowestCoveredHeight) {
   }
   EXPECT_GT(found, 500);
   EXPECT_GT(above, 200);
+}
+
+TEST(Coverage, MapsOfCausesTellTheirProgress) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("quick.yaml"));
+  const MapArea area = areaOf(scenario->region);
+  const MapGrid grid = makeMapGrid(area, scenario->region.size_m.x / 20, "utm");
+  std::vector<double> fractions;
+  computeCoverage(
+      scenario, loadTerrain(*scenario, area), grid,
+      {{{emfield::HeightReference::ground, 300}, {emfield::HeightReference::ground, 900}},
+       {Product::cause},
+       scenario::Quantity::detection_probability,
+       0.5,
+       {0, 1}},
+      {}, [](const CoverageMap&) {},
+      [&](const std::string&, double fraction) { fractions.push_back(fraction); });
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_EQ(fractions.front(), 0);
+  EXPECT_EQ(fractions.back(), 1);
+  for (std::size_t n = 1; n < fractions.size(); ++n) {
+    // of six steps (the fields of two times, two maps of each) a field is one, and the end of a map
+    EXPECT_LT(fractions[n] - fractions[n - 1], 1.1 / 6) << n;
+  }
+  EXPECT_GT(fractions.size(), 40u);
 }
 
 TEST(Coverage, RefusesProductsThatTheQuantityOrTheTimesDoNotHave) {
