@@ -1,8 +1,6 @@
 #include "emfield/channels/radar_clutter.h"
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "emfield/radar/receiver.h"
 #include "emscape/base/units.h"
@@ -25,61 +23,7 @@ double improvement(const Emitter& radar, double scenario::Mti::*spread_mps) {
   return filter ? filter->improvement(filter->mti.*spread_mps, radar.clutter->target_radial_speed_mps) : 1;
 }
 
-/// @param sums       of a cut's two-way power from -90 degrees on, up to evenly spaced elevations
-/// @param width_rad  of the beam
-PowerBelow powerBelow(const std::vector<double>& sums, double width_rad) {
-  constexpr double kReach = 4, kLeast = 1e-9;  // widths; part
-  const double intervals = static_cast<double>(sums.size() - 1);
-  PowerBelow below;
-  below.reach_rad = static_cast<float>(std::min(kReach * width_rad, kPi / 2));
-  for (int n = 0; n < PowerBelow::kNodes; ++n) {
-    const double angle_rad = static_cast<double>(below.reach_rad) * (2.0 * n / (PowerBelow::kNodes - 1) - 1);
-    const double at = std::clamp((angle_rad / kPi + 0.5) * intervals, 0.0, intervals - 1e-6);
-    const auto edge = static_cast<std::size_t>(at);
-    const double sum = sums[edge] + (at - static_cast<double>(edge)) * (sums[edge + 1] - sums[edge]);
-    const double part = std::clamp(sum / sums.back(), kLeast, 1 - kLeast);
-    below.log2_odds[n] = static_cast<float>(std::log2(part / (1 - part)));
-  }
-  return below;
-}
-
 }  // namespace
-
-ClutterBeam clutterBeam(const scenario::Antenna& antenna) {
-  constexpr double kPerBeamwidth = 64, kLeastSamples = 3600, kMostSamples = 36000;
-  const double beamwidth_deg = std::min(antenna.beamwidth_az_deg, antenna.beamwidth_el_deg);
-  const int samples =
-      static_cast<int>(std::clamp(180 * kPerBeamwidth / beamwidth_deg, kLeastSamples, kMostSamples));
-  const auto power = [&](double azimuth_rad, double elevation_rad) {
-    const double level = std::cos(elevation_rad);
-    const double amplitude = antenna.amplitudeTowards(
-        {level * std::cos(azimuth_rad), level * std::sin(azimuth_rad), std::sin(elevation_rad)}, 0, 0);
-    return std::pow(amplitude, 4);
-  };
-  ClutterBeam beam;
-  double highest = 0, highest_rad = 0;
-  std::vector<double> sums{0};  // up to the upper edge of each sample
-  for (int n = 0; n < samples; ++n) {
-    const double elevation_rad = kPi * ((n + 0.5) / samples - 0.5), here = power(0, elevation_rad);
-    sums.push_back(sums.back() + here * std::cos(elevation_rad) * kPi / samples);
-    if (here > highest) {
-      highest = here;
-      highest_rad = elevation_rad;
-    }
-  }
-  beam.elevation_rad = sums.back();
-  double highest_of_azimuth = highest;
-  for (int n = 0; n < samples; ++n) {
-    const double here = power(2 * kPi * n / samples, highest_rad);
-    beam.azimuth_rad += here * 2 * kPi / samples;
-    highest_of_azimuth = std::max(highest_of_azimuth, here);
-  }
-  if (!(highest > 0)) return {};
-  beam.azimuth_rad /= highest_of_azimuth;
-  beam.elevation_rad /= highest;
-  beam.below = powerBelow(sums, beam.elevation_rad);
-  return beam;
-}
 
 std::optional<MtiFilter> mtiFilterOf(const Emitter& radar) {
   if (!radar.clutter || !radar.clutter->mti || !radar.waveform) return std::nullopt;
@@ -100,7 +44,8 @@ double rainImprovement(const Emitter& radar) {
 }
 
 ClutterTask clutterTask(const scenario::Scenario& scenario, const Emitter& radar) {
-  const ClutterBeam beam = clutterBeam(*radar.antenna);
+  const std::shared_ptr<const ClutterBeam> held = clutterBeamOf(radar.antenna);
+  const ClutterBeam& beam = *held;
   const double unit = echoOfUnit(radar);
   ClutterTask task;
   if (radar.clutter->hasSurface()) {

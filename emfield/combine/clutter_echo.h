@@ -10,29 +10,13 @@
 #include <cmath>
 
 #include "base/math/fast_math.h"
+#include "emfield/clutter/clutter_beam.h"
 #include "emfield/combine/combine.h"
 #include "emfield/geometry/clutter_map.h"
 #include "emfield/radar/look.h"
 #include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
-
-/// Part of a beam's two-way power that is below an elevation, by the angle from its axis: log2(part / (1 -
-/// part)), which is smooth far into the side lobes, evenly spaced from -reach_rad to reach_rad.
-struct PowerBelow {
-  static constexpr int kNodes = 65;
-  float reach_rad = 1;
-  float log2_odds[kNodes] = {};
-
-  EMSCAPE_HD float at(float from_axis_rad) const {
-    const float node = (from_axis_rad / reach_rad + 1) * (0.5f * (kNodes - 1));
-    const float inside = node > 0 ? node : 0.0f;
-    const float bounded = inside < kNodes - 1 ? inside : kNodes - 1.0f;
-    const int below = static_cast<int>(bounded < kNodes - 2 ? bounded : kNodes - 2.0f);
-    const float odds = log2_odds[below] + (bounded - below) * (log2_odds[below + 1] - log2_odds[below]);
-    return 1 / (1 + fastExp2(-odds));
-  }
-};
 
 /// A radar's clutter in a channel, after its filter, as plain data; all 0: none.
 struct ClutterTask {
@@ -98,14 +82,19 @@ EMSCAPE_HD inline float surfaceToNoise(const ClutterTask& task, const Map& map, 
                                        const Aim& aim, float range_m) {
   const Vec3f direction = axisOf(beam, aim);
   const ClutterCell cell = map.cellAt(fastAtan2(direction.x, direction.y), range_m);
-  const float cosine2 = 1 - cell.sine * cell.sine;
-  const float level2 = direction.x * direction.x + direction.y * direction.y;
-  const float scale = std::sqrt((cosine2 > 0 ? cosine2 : 0.0f) / (level2 + 1e-12f));
-  const Vec3f to_surface = inAntennaFrame(beam, {direction.x * scale, direction.y * scale, cell.sine});
-  const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, to_surface);
-  const float power = amplitude * amplitude;
+  const TwoSurfaces surfaces = twoSurfaces(cell);
+  const float per_level2 = 1 / (direction.x * direction.x + direction.y * direction.y + 1e-12f);
+  const auto echoOf = [&](float sine, float echo) {
+    const float cosine2 = 1 - sine * sine;
+    const float scale = std::sqrt((cosine2 > 0 ? cosine2 : 0.0f) * per_level2);
+    const Vec3f to_surface = inAntennaFrame(beam, {direction.x * scale, direction.y * scale, sine});
+    const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, to_surface),
+                power = amplitude * amplitude;
+    return echo * power * power;
+  };
   const float widening = std::sqrt(1 - aim.steer_v * aim.steer_v) / cosineOfSteering(aim);
-  return task.surface * widening * cell.echo * power * power;
+  return task.surface * widening *
+         (echoOf(surfaces.sine[0], surfaces.echo[0]) + echoOf(surfaces.sine[1], surfaces.echo[1]));
 }
 
 /// The same in one of the trips that arrive with a slant range.

@@ -77,12 +77,19 @@ __global__ void clutterKernel(const __grid_constant__ ClutterMapTask task, Clutt
     task(azimuth, cells + static_cast<std::size_t>(azimuth) * task.grid.ranges);
 }
 
+/// One thread per range.
+__global__ void weighKernel(const __grid_constant__ ClutterMapTask task, ClutterCell* cells) {
+  const int range = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (range < task.grid.ranges) task.weighBeside(range, cells);
+}
+
 }  // namespace
 
 void fillClutterMap(const ClutterMapTask& task, ClutterCell* cells, cudaStream_t stream) {
-  constexpr int kRowsOfBlock = 32;  // few rows, to use as many multiprocessors as possible
-  const auto blocks = static_cast<unsigned>((task.grid.azimuths + kRowsOfBlock - 1) / kRowsOfBlock);
-  clutterKernel<<<blocks, kRowsOfBlock, 0, stream>>>(task, cells);
+  constexpr int kOfBlock = 32;  // few, to use as many multiprocessors as possible
+  const auto blocks = [](int count) { return static_cast<unsigned>((count + kOfBlock - 1) / kOfBlock); };
+  clutterKernel<<<blocks(task.grid.azimuths), kOfBlock, 0, stream>>>(task, cells);
+  weighKernel<<<blocks(task.grid.ranges), kOfBlock, 0, stream>>>(task, cells);
   checkLaunch("clutterMap");
 }
 

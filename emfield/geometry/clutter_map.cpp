@@ -14,12 +14,7 @@
 namespace emscape::emfield {
 namespace {
 
-constexpr int kMinAzimuths = 90, kMaxAzimuths = 1440, kMaxRanges = 2048;
-
-int azimuthsOf(const scenario::Emitter& radar) {
-  return std::clamp(static_cast<int>(std::ceil(720 / radar.antenna->beamwidth_az_deg)), kMinAzimuths,
-                    kMaxAzimuths);
-}
+constexpr int kMaxRanges = 2048;
 
 ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emitter& radar,
                         const Station& station, const propagation::PathExtent* extent) {
@@ -34,7 +29,7 @@ ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emit
     farthest_m = std::max(farthest_m, std::hypot(extent->farthest_m, highest_m));
   }
   ClutterGrid grid;
-  grid.azimuths = azimuthsOf(radar);
+  grid.azimuths = clutterAzimuths(*radar.antenna);
   grid.ranges = static_cast<int>(std::ceil(farthest_m / step_m)) + 1 + steps / 2;
   grid.step_m = static_cast<float>(step_m);
   grid.steps_of_cell = steps;
@@ -87,6 +82,7 @@ std::optional<ClutterMapTask> clutterMapTask(const scenario::Scenario& scenario,
   task.surface.frequency_ghz = radar.frequency_hz / 1e9;
   task.surface.horizontal_part = horizontalPart(radar.polarization);
   task.grid = clutterGrid(scenario, radar, station, extent);
+  task.power = clutterBeamOf(radar.antenna)->beside;
   task.air_db_per_m = static_cast<float>(airLossAtSea_db_per_m(scenario, radar));
   return task;
 }
@@ -102,11 +98,11 @@ ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar) {
           radar.clutter->sea_state,
           radar.clutter->range_cell_m,
           radar.waveform ? radar.waveform->unambiguousRange_m() : 0,
-          azimuthsOf(radar)};
+          radar.antenna};
 }
 
 std::size_t clutterMapBytes(const scenario::Emitter& radar) {
-  return hasClutterMap(radar) ? static_cast<std::size_t>(azimuthsOf(radar)) *
+  return hasClutterMap(radar) ? static_cast<std::size_t>(clutterAzimuths(*radar.antenna)) *
                                     (kMaxRanges + 1 + ClutterGrid::kMaxSteps / 2) * sizeof(ClutterCell)
                               : 0;
 }
@@ -118,6 +114,10 @@ std::vector<double> clutterPostRanges(const ClutterGrid& grid, double post_spaci
 void fillClutterMapCpu(const ClutterMapTask& task, ClutterCell* cells) {
   parallelFor(task.grid.azimuths, 1, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) task(i, cells + static_cast<std::size_t>(i) * task.grid.ranges);
+  });
+  constexpr int kTogether = 16;  // cells of some cache lines
+  parallelFor(task.grid.ranges, kTogether, [&](int begin, int end) {
+    for (int range = begin; range < end; ++range) task.weighBeside(range, cells);
   });
 }
 

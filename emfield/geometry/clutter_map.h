@@ -4,7 +4,7 @@
 /// One walk outwards per azimuth: a post is in sight if its elevation is above those of all posts before it,
 /// over an earth of effective radius. The face between it and the post before is then also in sight. The
 /// face's echo is its reflectivity at the grazing angle of the ray on it, times its area. The map depends on
-/// the radar's site, its wave and its range cell, not on the direction of its beam.
+/// the radar's site, its wave, its range cell and the width of its beam, not on the beam's direction.
 ///
 /// Echoes of second and later trips arrive with those of nearer surfaces (EchoTrips): each has the pattern
 /// towards its own surface.
@@ -17,6 +17,7 @@
 
 #include "base/math/device_math.h"
 #include "base/math/fast_math.h"
+#include "emfield/clutter/clutter_beam.h"
 #include "emfield/clutter/reflectivity.h"
 #include "emfield/ground/ground_posts.h"
 #include "emscape/base/host_device.h"
@@ -27,12 +28,45 @@ namespace emscape::emfield {
 
 /// A cell of the map: the sum over the surface of cross section over range^4, per radian of azimuth and in
 /// the radar's range cell about the middle of the map's, with the two-way loss of the atmosphere (1 / (m2
-/// rad)); and the sine of the elevation of the surface that echoes; of cells without an echo that of a
-/// neighbour.
+/// rad)); and the same sum of echo times sine, sine^2 and sine^3 of the surface's elevation. Such moments of
+/// several surfaces are those of all of them, and can be interpolated.
 struct ClutterCell {
-  float echo = 0;
-  float sine = 0;
+  float echo = 0, sine = 0, sine2 = 0, sine3 = 0;
+
+  EMSCAPE_HD void add(const ClutterCell& more, float times) {
+    echo += times * more.echo;
+    sine += times * more.sine;
+    sine2 += times * more.sine2;
+    sine3 += times * more.sine3;
+  }
 };
+
+/// Two surfaces that echo for all those of a cell.
+struct TwoSurfaces {
+  float sine[2];  ///< of their elevations
+  float echo[2];
+};
+
+/// The two with the moments of a cell, Gauss's quadrature: exact for patterns that are cubic in the sine, and
+/// for cells with surfaces at no more than two elevations. Without branches, for SIMD.
+/// @see Golub, Welsch, Math. Comp. 23 (1969), p. 221
+EMSCAPE_HD inline TwoSurfaces twoSurfaces(const ClutterCell& cell) {
+  constexpr float kRounding = 1e-6f;  // of sums of floats
+  const float per_echo = 1 / (cell.echo > 1e-37f ? cell.echo : 1e-37f);
+  const float mean = cell.sine * per_echo, square = cell.sine2 * per_echo, cube = cell.sine3 * per_echo;
+  const float mean2 = mean * mean, rest = square - (1 + kRounding) * mean2;
+  const float variance = rest > 1e-12f ? rest : 1e-12f;
+  const float third = cube - mean * (3 * square - 2 * mean2);
+  const float rounding = kRounding * (mean < 0 ? -mean : mean) * (3 * square + 2 * mean2);
+  const float surely = third > rounding ? third - rounding : third < -rounding ? third + rounding : 0.0f;
+  const float shift = 0.5f * surely / variance;
+  const float root = std::sqrt(shift * shift + variance);
+  // the product of the distances from the mean is the variance: without cancellation
+  const float longer = root + (shift > 0 ? shift : -shift), shorter = variance / longer;
+  const float above = shift > 0 ? longer : shorter, below = shift > 0 ? shorter : longer;
+  const float part = below / (above + below);
+  return {{mean - below, mean + above}, {(1 - part) * cell.echo, part * cell.echo}};
+}
 
 /// Slant ranges from which echoes arrive together: they differ by whole unambiguous ranges.
 struct EchoTrips {
@@ -84,10 +118,15 @@ EMSCAPE_HD inline ClutterNeighbours cellsBeside(float range_m, int ranges, float
   return {first, second, weight < 1 ? weight : 1.0f};
 }
 
-/// Bilinear: values of two rows (a, b and c, d) at two ranges.
-EMSCAPE_HD inline float mixed(float a, float b, float c, float d, float row_weight, float range_weight) {
-  const float near_row = a + range_weight * (b - a), far_row = c + range_weight * (d - c);
-  return near_row + row_weight * (far_row - near_row);
+/// Bilinear: cells of two rows (a, b and c, d) at two ranges.
+EMSCAPE_HD inline ClutterCell mixed(const ClutterCell& a, const ClutterCell& b, const ClutterCell& c,
+                                    const ClutterCell& d, float row_weight, float range_weight) {
+  const auto mix = [&](float at_a, float at_b, float at_c, float at_d) {
+    const float near_row = at_a + range_weight * (at_b - at_a), far_row = at_c + range_weight * (at_d - at_c);
+    return near_row + row_weight * (far_row - near_row);
+  };
+  return {mix(a.echo, b.echo, c.echo, d.echo), mix(a.sine, b.sine, c.sine, d.sine),
+          mix(a.sine2, b.sine2, c.sine2, d.sine2), mix(a.sine3, b.sine3, c.sine3, d.sine3)};
 }
 
 /// All rows of a map as plain data; no cells: no clutter of the surface.
@@ -104,8 +143,7 @@ struct ClutterMapView {
     // Indices instead of pointers per lane, so that the look-ups become gathers.
     const int a = rows.first * ranges + columns.first, b = rows.first * ranges + columns.second;
     const int c = rows.second * ranges + columns.first, d = rows.second * ranges + columns.second;
-    return {mixed(cells[a].echo, cells[b].echo, cells[c].echo, cells[d].echo, rows.weight, columns.weight),
-            mixed(cells[a].sine, cells[b].sine, cells[c].sine, cells[d].sine, rows.weight, columns.weight)};
+    return mixed(cells[a], cells[b], cells[c], cells[d], rows.weight, columns.weight);
   }
 };
 
@@ -115,9 +153,10 @@ struct ClutterMapTask {
   GroundPosts ground;  ///< posts as far as the last cell
   SurfaceEcho surface;
   ClutterGrid grid;
+  PowerBeside power;
   float air_db_per_m = 0;  ///< one way
 
-  /// Fills the cells of one azimuth.
+  /// Fills the cells of one azimuth with what is in sight along it.
   /// @param row  ranges cells
   EMSCAPE_HD void operator()(int azimuth, ClutterCell* row) const {
     for (int n = 0; n < grid.ranges; ++n) row[n] = {};
@@ -148,7 +187,34 @@ struct ClutterMapTask {
       before = here;
     });
     sumOverRangeCell(row);
-    normalize(row);
+  }
+
+  /// In one range, from the echoes along each azimuth to those of a beam with its axis on it, in place.
+  EMSCAPE_HD void weighBeside(int range, ClutterCell* cells) const {
+    const int beside = power.beside, rows = grid.azimuths;
+    if (beside == 0) return;
+    ClutterCell first[PowerBeside::kMaxBeside], before[PowerBeside::kMaxBeside];  // as they were
+    const auto at = [&](int row) -> ClutterCell& {
+      return cells[static_cast<std::size_t>(row) * grid.ranges + range];
+    };
+    for (int n = 0; n < beside; ++n) {
+      first[n] = at(n);
+      before[n] = at(rows - beside + n);
+    }
+    int oldest = 0;  // of before
+    for (int row = 0; row < rows; ++row) {
+      const ClutterCell here = at(row);
+      ClutterCell sum;
+      sum.add(here, power.parts[beside]);
+      for (int n = 0; n < beside; ++n) {
+        const int i = oldest + n, ahead = row + 1 + n;
+        sum.add(before[i < beside ? i : i - beside], power.parts[n]);
+        sum.add(ahead < rows ? at(ahead) : first[ahead - rows], power.parts[beside + 1 + n]);
+      }
+      at(row) = sum;
+      before[oldest] = here;
+      oldest = oldest + 1 < beside ? oldest + 1 : 0;
+    }
   }
 
  private:
@@ -160,28 +226,13 @@ struct ClutterMapTask {
       const ClutterCell here = row[n];
       for (int i = 0; i < beside; ++i) {
         const ClutterCell behind = n + 1 + i < grid.ranges ? row[n + 1 + i] : ClutterCell{};
-        row[n].echo += before[i].echo + behind.echo;
-        row[n].sine += before[i].sine + behind.sine;
+        row[n].add(before[i], 1);
+        row[n].add(behind, 1);
       }
       for (int i = beside - 1; i > 0; --i) before[i] = before[i - 1];
       before[0] = here;
     }
   }
-  /// From sums of depths weighted by the echo to means of sines, seen from the middles of the cells.
-  EMSCAPE_HD void normalize(ClutterCell* row) const {
-    int first = 0;
-    while (first < grid.ranges && !(row[first].echo > 0)) ++first;
-    if (first == grid.ranges) return;
-    const auto sineAt = [&](int n) {
-      return row[n].sine / (row[n].echo * grid.step_m * (static_cast<float>(n) + 0.5f));
-    };
-    float sine = sineAt(first);
-    for (int n = 0; n < grid.ranges; ++n) {
-      if (row[n].echo > 0) sine = sineAt(n);
-      row[n].sine = sine > -1 ? sine : -1.0f;
-    }
-  }
-
   struct Post {
     double range_m = 0, height_msl_m = 0, slant_m = 0;
     SurfaceFace face;
@@ -216,8 +267,10 @@ struct ClutterMapTask {
       const double echo = surface.reflectivity(face, sine) * area_m2 / (range2_m2 * range2_m2) *
                           std::pow(10.0, -0.2 * static_cast<double>(air_db_per_m) * range_m) *
                           static_cast<double>(grid.part_of_step);
-      row[n].echo += static_cast<float>(echo);
-      row[n].sine -= static_cast<float>(echo * depth_m);  // becomes a mean sine at the end
+      const double up = -depth_m / range_m, of_up = echo * up;
+      row[n].add({static_cast<float>(echo), static_cast<float>(of_up), static_cast<float>(of_up * up),
+                  static_cast<float>(of_up * up * up)},
+                 1);
     }
   }
 };
@@ -238,13 +291,13 @@ struct ClutterMapInputs {
   std::optional<int> sea_state;
   double range_cell_m = 0;
   double unambiguous_range_m = 0;
-  int azimuths = 0;
+  scenario::AntennaPtr antenna;
 };
 ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar);
 
 /// The task of a radar's map without the ground; empty if it has no map. Two rows per beamwidth, 90 to 1440
 /// in all; five, three or one cell per range cell, at most 2048 as far as the region's farthest point: at
-/// most 24 MB.
+/// most 48 MB.
 /// @param extent  of paths that may extend beyond the region; null: none. The positions of the cells do not
 /// change
 std::optional<ClutterMapTask> clutterMapTask(const scenario::Scenario& scenario,

@@ -24,8 +24,8 @@ PathClutter::PathClutter(const scenario::Snapshot& snapshot, int radar, double r
   task_.ground = groundPosts(terrain, post_ranges_m_);
 }
 
-const std::vector<ClutterCell>& PathClutter::row(int azimuth) const {
-  std::vector<ClutterCell>& cells = rows_[azimuth];
+const std::vector<ClutterCell>& PathClutter::alongAzimuth(int azimuth) const {
+  std::vector<ClutterCell>& cells = along_[azimuth];
   if (cells.empty()) {
     cells.resize(static_cast<std::size_t>(task_.grid.ranges));
     task_(azimuth, cells.data());
@@ -33,16 +33,24 @@ const std::vector<ClutterCell>& PathClutter::row(int azimuth) const {
   return cells;
 }
 
+ClutterCell PathClutter::ofBeam(int row, int cell) const {
+  const PowerBeside& power = task_.power;
+  const int azimuths = task_.grid.azimuths;
+  ClutterCell sum;
+  for (int n = 0; n <= 2 * power.beside; ++n) {
+    const int azimuth = (row + n - power.beside + azimuths) % azimuths;
+    sum.add(alongAzimuth(azimuth)[static_cast<std::size_t>(cell)], power.parts[n]);
+  }
+  return sum;
+}
+
 ClutterCell PathClutter::cellAt(float azimuth_rad, float range_m) const {
   const ClutterMapView shape = clutterMapView(task_.grid, nullptr);
   const ClutterNeighbours rows = rowsBeside(azimuth_rad, shape.azimuths, shape.azimuths_per_rad);
   const ClutterNeighbours columns = cellsBeside(range_m, shape.ranges, shape.cells_per_m);
-  const auto mix = [&](float ClutterCell::*value) {
-    const std::vector<ClutterCell>&near_row = row(rows.first), &far_row = row(rows.second);
-    return mixed(near_row[columns.first].*value, near_row[columns.second].*value,
-                 far_row[columns.first].*value, far_row[columns.second].*value, rows.weight, columns.weight);
-  };
-  return {mix(&ClutterCell::echo), mix(&ClutterCell::sine)};
+  return mixed(ofBeam(rows.first, columns.first), ofBeam(rows.first, columns.second),
+               ofBeam(rows.second, columns.first), ofBeam(rows.second, columns.second), rows.weight,
+               columns.weight);
 }
 
 float PathClutter::toNoise(const ClutterTask& task, const EmitterBeam& beam, const Aim& aim) const {

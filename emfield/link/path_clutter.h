@@ -28,12 +28,13 @@ class PathClutter {
   ClutterCell cellAt(float azimuth_rad, float range_m) const;
 
  private:
-  const std::vector<ClutterCell>& row(int azimuth) const;
+  const std::vector<ClutterCell>& alongAzimuth(int azimuth) const;
+  ClutterCell ofBeam(int row, int cell) const;
 
   double range_m_;
   ClutterMapTask task_;
   std::vector<double> post_ranges_m_;
-  mutable std::map<int, std::vector<ClutterCell>> rows_;
+  mutable std::map<int, std::vector<ClutterCell>> along_;
 };
 
 }  // namespace emscape::emfield

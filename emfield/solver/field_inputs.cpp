@@ -72,8 +72,8 @@ auto membersOf(const HeardRanges& heard) {
   return std::tie(farthest_m, repeat_m, pulse_m);
 }
 auto membersOf(const ClutterMapInputs& map) {
-  const auto& [land_gamma_db, land_by_cover, sea_state, range_cell_m, unambiguous_range_m, azimuths] = map;
-  return std::tie(land_gamma_db, land_by_cover, sea_state, range_cell_m, unambiguous_range_m, azimuths);
+  const auto& [land_gamma_db, land_by_cover, sea_state, range_cell_m, unambiguous_range_m, antenna] = map;
+  return std::tie(land_gamma_db, land_by_cover, sea_state, range_cell_m, unambiguous_range_m);
 }
 
 template <class T>
@@ -168,6 +168,12 @@ bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b) {
   return a == b || samePattern(a->view(), b->view());
 }
 
+/// @param a, b  null: no map
+bool haveSameBeam(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b) {
+  return a == b || (a && b && samePattern(a, b) && a->beamwidth_az_deg == b->beamwidth_az_deg &&
+                    a->beamwidth_el_deg == b->beamwidth_el_deg);
+}
+
 bool areSame(const std::optional<ElevationCut>& a, const std::optional<ElevationCut>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
   const auto& [antenna, zenith, steer_v] = *a;
@@ -219,7 +225,8 @@ bool haveSameSettings(const GeometryInputs& computed, const GeometryInputs& need
          same(ground, needed.propagation.ground) && same(atmosphere, needed.propagation.atmosphere) &&
          propagation::areSame(atmosphere.refractivity, needed.propagation.atmosphere.refractivity) &&
          areSame(elevation_cut, needed.elevation_cut) && (mechanisms || !needed.mechanisms) &&
-         (!needed.clutter || (clutter && same(*clutter, *needed.clutter)));
+         (!needed.clutter || (clutter && same(*clutter, *needed.clutter) &&
+                              haveSameBeam(clutter->antenna, needed.clutter->antenna)));
 }
 
 bool areSame(const GeometryInputs& computed, const GeometryInputs& needed) {

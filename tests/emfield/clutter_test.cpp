@@ -65,7 +65,7 @@ TEST(ClutterMap, SmoothSeaEqualsClosedForm) {
     const ClutterCell& cell = map.at(17, range_m);
     // a ring's part of one radian has the area R dR
     EXPECT_NEAR(ratioToDb(double(cell.echo) / (sigma0 * 150 / std::pow(range_m, 3))), 0, 0.02) << range_m;
-    EXPECT_NEAR(double(cell.sine), -kHeight_m / range_m - range_m / (2 * radius_m), 2e-4);
+    EXPECT_NEAR(double(cell.sine / cell.echo), -kHeight_m / range_m - range_m / (2 * radius_m), 2e-4);
     EXPECT_EQ(cell.echo, map.at(60, range_m).echo) << "the same all round";
   }
   EXPECT_EQ(map.at(17, horizon_m + 1000).echo, 0) << "beyond the horizon";
@@ -99,7 +99,7 @@ TEST(ClutterMap, IsZeroBehindRidgeAndLargerOnItsSlope) {
   // constant gamma over flat ground: gamma h / R^4 per metre of range and radian
   const double depth_m = 30 + 6000.0 * 6000 / (2 * 8.5e6), sine = 30 / 6075.0 - 6075 / (2 * 8.5e6);
   EXPECT_NEAR(double(plain.at(east, 6075).echo) / (dbToRatio(-15) * sine * 150 / std::pow(6075, 3)), 1, 0.02);
-  EXPECT_NEAR(double(plain.at(east, 6075).sine), -depth_m / 6075, 2e-4);
+  EXPECT_NEAR(double(plain.at(east, 6075).sine / plain.at(east, 6075).echo), -depth_m / 6075, 2e-4);
 }
 
 TEST(ClutterMap, LowGroundIsSeaOnlyWhereThereIsSea) {
@@ -193,7 +193,7 @@ TEST_P(Clutter, SeaEqualsClosedFormOfItsPatch) {
   }
 }
 
-TEST_P(Clutter, OfTheNearestCellsIsSeenAtTheElevationOfItsRange) {
+TEST_P(Clutter, OfALongRangeCellIsTheSumOfItsParts) {
   scenario::Emitter radar = cluttered(trackingRadar());
   radar.antenna = scenario::makeGaussian(kGain_dbi, 5, 5, -40);
   radar.clutter->sea_state = 5;
@@ -201,13 +201,16 @@ TEST_P(Clutter, OfTheNearestCellsIsSeenAtTheElevationOfItsRange) {
     radar.clutter->range_cell_m = cell_m;
     const auto scenario = lineWith(radar);
     const auto snr = field(scenario, "snr_db"), sclnr = field(scenario, "sclnr_db");
-    return [snr, sclnr, cell_m](double range_m) {
-      return ratioToDb(clutterToNoise(double(valueEast(*snr, range_m)), double(valueEast(*sclnr, range_m))) /
-                       cell_m);
+    return [snr, sclnr](double range_m) {
+      return clutterToNoise(double(valueEast(*snr, range_m)), double(valueEast(*sclnr, range_m)));
     };
   };
-  const auto coarse = clutterAt(1500), fine = clutterAt(75);
-  for (const double range_m : {4e3, 5e3, 6e3, 9e3}) EXPECT_NEAR(coarse(range_m), fine(range_m), 2) << range_m;
+  const auto whole = clutterAt(3 * kSpacing_m), part = clutterAt(kSpacing_m);
+  // The beam ends within the cells' span of elevations; at 5 km they span more than its width.
+  for (const double range_m : {5e3, 6e3, 7e3, 9e3}) {
+    const double sum = part(range_m - kSpacing_m) + part(range_m) + part(range_m + kSpacing_m);
+    EXPECT_NEAR(ratioToDb(whole(range_m) / sum), 0, range_m > 5e3 ? 0.5 : 3) << range_m;
+  }
 }
 
 TEST_P(Clutter, OfLaterTripsIsSeenByTheBeamTowardsItsOwnSurface) {
