@@ -119,9 +119,13 @@ double patternEntries(const Emitter& emitter, const scenario::ScanSweep& sweep, 
   const double tilts = tiltsOf(sweep);
   const auto arcs = double(sweep.arcs.size());
   // Many arcs of a tilt are one convolution, or runs for the largest values.
-  constexpr double kFewArcs = 128, kRun = 0.2;
-  const double together = interval == IntervalKind::mean ? tilts * azimuths / 64 : arcs * kRun;
-  const double each = arcs > kFewArcs ? std::min(arcs, together) : arcs;
+  constexpr double kArc = 4.5, kRun = 0.2;
+  const bool is_mean = interval == IntervalKind::mean;
+  const double together = is_mean ? tilts * azimuths / 64 : arcs * kRun;
+  const bool are_many =
+      scenario::areManyArcs(sweep.arcs.size(), static_cast<std::size_t>(tilts),
+                            is_mean ? scenario::SweptPattern::mean : scenario::SweptPattern::largest);
+  const double each = are_many ? std::min(kArc * arcs, together) : kArc * arcs;
   const double of_pattern = of_row * tilts + azimuths * double(sweep.dwells.size());
   return elevations * (entryOf(emitter) * of_pattern + azimuths * each);
 }

@@ -20,8 +20,7 @@
 namespace emscape::scenario {
 namespace {
 
-/// More are computed by many_arcs.h, but for beams so narrow that their table is refined.
-constexpr std::size_t kFewArcs = 128;
+constexpr std::size_t kFewDwells = 128;
 
 /// Number of intervals of a table: a span with a number of steps per beamwidth; even, up to a limit.
 int intervalsFor(double span_deg, double beamwidth_deg, double steps_per_beamwidth, int most) {
@@ -131,7 +130,7 @@ struct Steering {
 
 std::vector<Steering> steeringsOf(const ScanSweep& sweep) {
   std::vector<SweptDwell> dwells = sweep.dwells;
-  if (dwells.size() > kFewArcs) {  // of many bursts: each position once
+  if (dwells.size() > kFewDwells) {  // of many bursts: each position once
     const auto angles = [](const SweptDwell& dwell) {
       return std::tie(dwell.azimuth_deg, dwell.elevation_deg);
     };
@@ -311,7 +310,8 @@ AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPatt
   std::vector<float> amplitudes;
   resizeInParts(amplitudes, static_cast<std::size_t>(count) * static_cast<std::size_t>(elevations.count()));
   std::optional<ManyArcs> many;
-  if (sweep.arcs.size() > kFewArcs && !columns.refined) many.emplace(sweep, tilts, count - 1, pattern);
+  if (areManyArcs(sweep.arcs.size(), tilts.tilts_deg.size(), pattern) && !columns.refined)
+    many.emplace(sweep, tilts, count - 1, pattern);
   std::atomic<int> done{0};
   parallelFor(elevations.count(), 8, [&, &columns = columns, &elevations = elevations](int begin, int end) {
     for (int e = begin; e < end; ++e) {

@@ -25,6 +25,14 @@ enum class SweptPattern {
 /// beam's directions, less where a scan has very many; beyond them 1/8 degree
 AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern);
 
+/// True for scans whose pattern is computed by whole rows (many_arcs.h), not arc by arc, which takes longer;
+/// of beams whose table is not refined.
+/// @param tilts  different elevations of the arcs
+inline bool areManyArcs(std::size_t arcs, std::size_t tilts, SweptPattern pattern) {
+  constexpr std::size_t kFew = 128, kFewOfMean = 12;
+  return arcs > kFew || (pattern == SweptPattern::mean && arcs > kFewOfMean * tilts);
+}
+
 /// Entries of the table of an interval's pattern, and azimuths from which each of its rows is computed.
 struct SweptSize {
   double azimuths = 0, elevations = 0, azimuths_of_row = 0;

@@ -109,6 +109,14 @@ TEST(SweptAntennas, SLOW_EqualNarrowBeamsInSmallSteps) {
   expectAsInSteps(makePhasedArray(45, 400, 400, 0.5, 1, -50), dwells);
 }
 
+TEST(SweptAntennas, SLOW_OfManyBurstsEqualTheBeamInSmallSteps) {
+  ScanSweep bursts;
+  for (int n = 0; n < 40; ++n) bursts.arcs.push_back({9.0 * n - 180, 4.1, 1, n % 3 * 0.01, 1});
+  ASSERT_TRUE(areManyArcs(bursts.arcs.size(), 1, SweptPattern::mean));
+  // largest values have kinks between bursts, which a table cuts
+  expectAsInSteps(makeGaussian(30, 5, 6, -40), bursts, 0.3);
+}
+
 TEST(SweptAntennas, SLOW_EqualWholeTurnsOfNarrowBeamsInSmallSteps) {
   ScanSweep turns;
   turns.arcs = {{0, 360, 2.345, 1, 1}};
