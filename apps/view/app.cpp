@@ -47,11 +47,11 @@ bool isFunctionKey(const KeyChord& chord) {
   return chord.key.size() > 1 && chord.key[0] == 'F' && chord.key[1] >= '0' && chord.key[1] <= '9';
 }
 
-/// True if a text field may take the chord: all without Ctrl, and those of editing.
+/// True if a text field may take the chord: all without Ctrl but function keys, and those of editing.
 bool editsText(const KeyChord& chord) {
   static const std::set<std::string> kEditing{"A",    "C",     "V",    "X",   "Y",         "Z",
                                               "Left", "Right", "Home", "End", "Backspace", "Delete"};
-  return !chord.control || kEditing.count(chord.key) != 0;
+  return chord.control ? kEditing.count(chord.key) != 0 : !isFunctionKey(chord);
 }
 
 /// The largest rectangle of a picture's proportions in the middle of an area: until the picture of a new size
@@ -321,11 +321,11 @@ void App::draw(const Layout& layout) {
 }
 
 void App::handleKeys(const std::vector<InputEvent>& events) {
+  if (const auto key = std::exchange(waiting_key_, std::nullopt)) act(*key);
   const Panels& panels = session_->panels;
   const bool dialog =
       panels.record || panels.restore || panels.unsaved || panels.time || panels.replace || panels.warnings;
   const bool typing = ImGui::GetIO().WantTextInput && !panels.open;
-  const bool in_panel = scenarioPanelHasKeyboard() || was_popup_open_;
   for (const InputEvent& event : events) {
     if (event.kind != InputEvent::Kind::key || event.action == GLFW_RELEASE) continue;
     const KeyChord chord = chordOf(event);
@@ -334,6 +334,12 @@ void App::handleKeys(const std::vector<InputEvent>& events) {
       ImGui::ClosePopupToLevel(0, /*restore_focus_to_window_under_popup=*/true);  // menus and lists
       continue;
     }
+    if (typing && !dialog && !editsText(chord)) {  // as a click elsewhere the field gives its text first
+      ImGui::ClearActiveID();
+      waiting_key_ = event;
+      continue;
+    }
+    const bool in_panel = was_popup_open_ || scenarioPanelTakes(chord);
     const bool is_for_panel = dialog || typing || (panels.open && editsText(chord)) ||
                               (in_panel && !chord.control && !isFunctionKey(chord));
     const bool is_global = chord.key == "F1" || chord.key == "F10" || chord.key == "F12" ||
@@ -342,13 +348,18 @@ void App::handleKeys(const std::vector<InputEvent>& events) {
     const bool flying = window_.buttonDown(GLFW_MOUSE_BUTTON_RIGHT) && !chord.control;
     if (flying && chord.key.size() == 1 && std::string("WASDQE").find(chord.key) != std::string::npos)
       continue;
-    log_.write("key", {{"key", toString(chord)}});
-    if (chord.key.size() == 1 && chord.key[0] >= '1' && chord.key[0] <= '9') {
-      session_->perform({chord.control ? "bookmark" : "recall", {{"number", chord.key[0] - '0'}}});
-    } else if (const Action* action = actionOf(chord);
-               action && (event.action != GLFW_REPEAT || repeats(*action))) {
-      session_->perform(parseCommand(std::string(action->command)));
-    }
+    act(event);
+  }
+}
+
+void App::act(const InputEvent& key) {
+  const KeyChord chord = chordOf(key);
+  log_.write("key", {{"key", toString(chord)}});
+  if (chord.key.size() == 1 && chord.key[0] >= '1' && chord.key[0] <= '9') {
+    session_->perform({chord.control ? "bookmark" : "recall", {{"number", chord.key[0] - '0'}}});
+  } else if (const Action* action = actionOf(chord);
+             action && (key.action != GLFW_REPEAT || repeats(*action))) {
+    session_->perform(parseCommand(std::string(action->command)));
   }
 }
 

@@ -41,6 +41,8 @@ class App : private WindowControl {
   /// Seconds until the window must be drawn again; 0: now.
   double untilDrawing_s() const;
   void handleKeys(const std::vector<InputEvent>& events);
+  /// Performs the action of a key.
+  void act(const InputEvent& key);
   void drawPanels(const Layout& layout);
   void updateTexture();
   void showFromDevice(const render::DevicePicture& picture);
@@ -78,8 +80,9 @@ class App : private WindowControl {
   long long shown_picture_ = 0;  // number of the picture in texture_; 0: none
   std::optional<std::string> screenshot_;
   std::string open_panels_;
-  bool was_popup_open_ = false;           // before this frame
-  const void* drawn_scenario_ = nullptr;  // only compared
+  std::optional<InputEvent> waiting_key_;  // until the field that was open has given its text
+  bool was_popup_open_ = false;            // before this frame
+  const void* drawn_scenario_ = nullptr;   // only compared
   std::string title_;
   int window_fits_;            // remaining attempts to give the picture the size of the first view
   render::ImageSize fitting_;  // the size requested last

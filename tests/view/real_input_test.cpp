@@ -15,7 +15,7 @@ using testing::Lt;
 
 // With quick.yaml in a window of 1000 x 800 pixels
 constexpr Place kSwitch{933, 118}, kFrequency{890, 258}, kBandwidth{890, 285}, kPower{850, 312},
-    kLosses{950, 339}, kGain{850, 493};
+    kLosses{950, 339}, kModel{900, 393}, kGain{850, 493};
 constexpr Place kRate{228, 648}, kPicture{120, 150}, kLowerPicture{120, 480}, kTimeLine{500, 722},
     kFileMenu{27, 12}, kOpenItem{50, 35};
 
@@ -63,6 +63,31 @@ TEST_F(RealInput, TypedNumbersAreTakenWhenAnotherFieldIsClicked) {
   EXPECT_EQ(log("edit")[1]["value"], "7");
 }
 
+TEST_F(RealInput, KeysWithControlTakeTheNumberThatIsBeingTypedAndThenAct) {
+  const std::string input = folder_ / "a.yaml";
+  writeFile(input, readFile(quick()));
+  openByHand(input);
+  ASSERT_TRUE(xdotool(controlClick(kPower) + type("6 kW") + " key ctrl+s"));
+  EXPECT_TRUE(commandsBecome("set save")) << commands();
+  ASSERT_TRUE(comes([&] { return std::filesystem::exists(folder_ / "a.edited.yaml"); }));
+  EXPECT_NE(readFile(folder_ / "a.edited.yaml").find("power_w: 6000"), std::string::npos);
+  ASSERT_TRUE(xdotool(click(kRate) + " key ctrl+a" + type("4") + " key ctrl+q"));
+  EXPECT_TRUE(commandsBecome("set save rate quit")) << commands();
+  EXPECT_EQ(program_->wait().status, 0);
+  program_.reset();
+}
+
+TEST_F(RealInput, LettersAndSpaceAreForThePictureAfterANumberIsTypedOrAChoiceIsMade) {
+  open(quick());
+  ASSERT_TRUE(xdotool(controlClick(kPower) + type("5 kW") + " key Return key c key space key k"));
+  EXPECT_TRUE(commandsBecome("set compare play pause")) << commands();
+  ASSERT_TRUE(xdotool(type("7") + " key Return"));  // the row still has the digits
+  EXPECT_TRUE(commandsBecome("set compare play pause set")) << commands();
+  ASSERT_TRUE(
+      xdotool(click(kModel) + " sleep 0.5" + click({kModel.x - 40, kModel.y + 70}) + " sleep 0.5 key space"));
+  EXPECT_TRUE(commandsBecome("set compare play pause set choose play")) << commands();
+}
+
 TEST_F(RealInput, EscapeInAFieldTakesBackTheTypedNumberAndNothingElse) {
   open(quick());
   ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key Escape"));
@@ -80,7 +105,7 @@ TEST_F(RealInput, EscapeAndUndoShowTheValueInPlaceOfARefusedText) {
   ASSERT_TRUE(xdotool(type("7") + " key Return"));
   EXPECT_TRUE(commandsBecome("set")) << commands();
   ASSERT_TRUE(comesToLog("edit"));
-  ASSERT_TRUE(xdotool(type("q") + " key Return sleep 0.3 key ctrl+z sleep 0.5"));
+  ASSERT_TRUE(xdotool("key Return" + type("q") + " key Return sleep 0.3 key ctrl+z sleep 0.5"));
   EXPECT_TRUE(commandsBecome("set undo")) << commands();
   // Without a refused text, a drag changes the value.
   ASSERT_TRUE(xdotool(drag(kLosses, 20)));

@@ -1,5 +1,8 @@
 /// Help: first steps, keys and mouse.
+#include <array>
+
 #include "apps/view/panels/panels.h"
+#include "apps/view/values/search_text.h"
 #include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/glyphs.h"
 #include "apps/view/widgets/theme.h"
@@ -27,9 +30,9 @@ void drawFirstMinutes(PanelContext& context) {
 }
 
 /// A row of keys, effect and command, if the search finds it. @return true if it does
-bool drawRow(PanelContext& context, const ImGuiTextFilter& filter, const std::string& keys,
+bool drawRow(PanelContext& context, const std::string& searched, const std::string& keys,
              const std::string& does, const std::string& command_line) {
-  if (!filter.PassFilter((keys + " " + does + " " + command_line).c_str())) return false;
+  if (!isFound(searched, keys + " " + does + " " + command_line)) return false;
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::TextWrapped("%s", drawable(keys).c_str());
@@ -43,13 +46,13 @@ bool drawRow(PanelContext& context, const ImGuiTextFilter& filter, const std::st
   return true;
 }
 
-void drawKeys(PanelContext& context, const ImGuiTextFilter& filter) {
+void drawKeys(PanelContext& context, const std::string& searched) {
   bool found = false;
   if (ImGui::BeginTable("gestures", 2, ImGuiTableFlags_RowBg)) {
     ImGui::TableSetupColumn("gesture", ImGuiTableColumnFlags_WidthStretch, 0.4F);
     ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch, 0.6F);
     for (const Gesture& gesture : gestures())
-      found |= drawRow(context, filter, gesture.gesture, gesture.does, "");
+      found |= drawRow(context, searched, gesture.gesture, gesture.does, "");
     ImGui::EndTable();
   }
   if (!ImGui::BeginTable("help", 3, ImGuiTableFlags_RowBg)) return;
@@ -57,7 +60,7 @@ void drawKeys(PanelContext& context, const ImGuiTextFilter& filter) {
   ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch, 0.34F);
   ImGui::TableSetupColumn("command line", ImGuiTableColumnFlags_WidthStretch, 0.36F);
   for (const std::string& menu : menuNames()) {
-    if (!filter.IsActive()) {
+    if (searched.empty()) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
       ImGui::TextColored(accentColor(context.session.theme()), "%s", drawable(menu).c_str());
@@ -66,7 +69,7 @@ void drawKeys(PanelContext& context, const ImGuiTextFilter& filter) {
       if (menu != action.menu) continue;
       std::string keys;
       for (const KeyChord& chord : chordsOf(action)) keys += (keys.empty() ? "" : ", ") + toString(chord);
-      found |= drawRow(context, filter, keys, action.name, action.command_line);
+      found |= drawRow(context, searched, keys, action.name, action.command_line);
     }
   }
   ImGui::EndTable();
@@ -76,20 +79,17 @@ void drawKeys(PanelContext& context, const ImGuiTextFilter& filter) {
 }  // namespace
 
 void drawHelp(PanelContext& context) {
-  static ImGuiTextFilter filter;
+  static std::array<char, 256> searched;
   if (!beginDialog(context, "Help", context.session.panels.help, {780, 640}, Waits::no)) return;
   if (ImGui::IsWindowAppearing()) {
-    filter.Clear();
+    searched[0] = '\0';
     ImGui::SetKeyboardFocusHere();
   }
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::InputTextWithHint("##search", "search keys, actions and options", filter.InputBuf,
-                               IM_ARRAYSIZE(filter.InputBuf))) {
-    filter.Build();
-  }
+  ImGui::InputTextWithHint("##search", "search keys, actions and options", searched.data(), searched.size());
   ImGui::BeginChild("contents");
-  if (!filter.IsActive()) drawFirstMinutes(context);
-  drawKeys(context, filter);
+  if (searched[0] == '\0') drawFirstMinutes(context);
+  drawKeys(context, searched.data());
   ImGui::EndChild();
   endDialog();
 }

@@ -35,8 +35,8 @@ void drawLegendMenu(PanelContext& context, const Area& picture);
 /// Shows or hides the side panel of a narrow window.
 void drawSideButton(PanelContext& context);
 void drawScenarioPanel(PanelContext& context);
-/// True if the panel of the scenario has the keyboard: its keys are not for the picture.
-bool scenarioPanelHasKeyboard();
+/// True if a key without Ctrl is for the panel of the scenario, not for the picture.
+bool scenarioPanelTakes(const KeyChord& chord);
 /// True if Tab moves the focus between the rows of that panel.
 bool scenarioPanelTakesTab(const Session& session);
 /// Colours and opacities: transfer_panel.cpp.

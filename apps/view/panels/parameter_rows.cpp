@@ -43,6 +43,13 @@ std::string rangeOf(const Parameter& parameter) {
          rangeText(parameter.minimum, parameter.maximum, unitSigns(parameter.unit));
 }
 
+RowText textOf(const Parameter& parameter) {
+  if (isNumber(parameter)) return RowText::number;
+  const bool is_typed =
+      parameter.type == Type::text || (parameter.type == Type::list && parameter.choices.empty());
+  return is_typed ? RowText::all : RowText::none;
+}
+
 bool isCoordinate(const Parameter& parameter) {
   return parameter.key == "latitude_deg" || parameter.key == "longitude_deg";
 }
@@ -209,13 +216,13 @@ bool ParameterRows::drawSubheading(const std::string& id, const std::string& nam
   list.PopClipRect();
   ImGui::Dummy({1, ImGui::GetTextLineHeight()});
   storage.SetBool(key, is_open);
-  showFocus(id);
+  showFocus(id, RowText::none);
   return is_open;
 }
 
 void ParameterRows::drawRow(const Parameter& parameter) {
   ImGui::PushID(parameter.key.c_str());
-  focus_.add(parameter.path);
+  focus_.add(parameter.path, textOf(parameter));
   takeRejection(parameter.path);
   restoreValue(parameter.path);
   label(parameter.name, tooltipOf(parameter), edited_.count(parameter.path) > 0);
@@ -242,7 +249,7 @@ void ParameterRows::drawRow(const Parameter& parameter) {
       break;
   }
   if (is_refused) ImGui::PopStyleColor();
-  showFocus(parameter.path);
+  showFocus(parameter.path, textOf(parameter));
   drawRefusal(parameter.path);
   ImGui::PopID();
 }
@@ -261,8 +268,9 @@ void ParameterRows::drawLabelMenu(const Parameter& parameter) const {
   ImGui::EndPopup();
 }
 
-void ParameterRows::showFocus(const std::string& path) {
-  if (ImGui::IsItemClicked() && !focus_.isTyping(path)) focus_.take(path);
+void ParameterRows::showFocus(const std::string& path, RowText text) {
+  if (ImGui::IsItemClicked() && !focus_.isTyping(path))
+    text == RowText::none ? focus_.startAt(path) : focus_.take(path);
   if (!focus_.has(path)) return;
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   ImGui::GetWindowDrawList()->AddRect(low, high,

@@ -62,8 +62,8 @@ class ParameterRows {
   void drawChoice(const scenario::Parameter& parameter);
   void drawItems(const scenario::Parameter& parameter);
   /// Draws the mark of the focus around the control drawn last and scrolls to it; takes the focus if it is
-  /// clicked.
-  void showFocus(const std::string& path);
+  /// clicked and a text is typed there.
+  void showFocus(const std::string& path, RowText text);
   void takeRejection(const std::string& path);
   void restoreValue(const std::string& path);
   void drawRefusal(const std::string& path);

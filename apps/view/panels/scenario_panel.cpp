@@ -3,12 +3,14 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <unordered_set>
 
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/parameter_rows.h"
 #include "apps/view/parts/renamed_items.h"
+#include "apps/view/values/search_text.h"
 #include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
 #include "emscape/base/error.h"
@@ -48,7 +50,7 @@ struct PanelState {
   bool arrives = false;                  // it is scrolled to
   std::string shown;                     // path of the section that is scrolled to
   bool is_new = true;
-  ImGuiTextFilter filter;
+  std::array<char, 256> searched{};
   RowState rows;
 
   void take(const playback::ScenarioPtr& next) {
@@ -290,12 +292,13 @@ void drawGroupName(PanelContext& context, const SectionGroup& group) {
 }
 
 /// Draws only visible sections: runs of closed sections are clipped.
-void drawSections(PanelContext& context, PanelState& state, const SectionGroup& group) {
+/// @return false if the search finds none
+bool drawSections(PanelContext& context, PanelState& state, const SectionGroup& group) {
   std::vector<const Section*> shown;
   for (const Section& section : group.sections) {
-    if (state.filter.PassFilter(section.name.c_str())) shown.push_back(&section);
+    if (isFound(state.searched.data(), section.name)) shown.push_back(&section);
   }
-  if (shown.empty() && state.filter.IsActive()) return;
+  if (shown.empty() && state.searched[0] != '\0') return false;
   drawGroupName(context, group);
   RowFocus& focus = scenarioFocus();
   const bool is_item = !group.kinds.empty();
@@ -323,6 +326,7 @@ void drawSections(PanelContext& context, PanelState& state, const SectionGroup& 
     at = end;
   }
   ImGui::Spacing();
+  return true;
 }
 
 /// The edits, each with a button that takes it back.
@@ -386,8 +390,8 @@ bool isDialogOpen(const Panels& panels) {
 
 }  // namespace
 
-bool scenarioPanelHasKeyboard() {
-  return scenarioFocus().hasKeyboard();
+bool scenarioPanelTakes(const KeyChord& chord) {
+  return scenarioFocus().takes(chord);
 }
 
 bool scenarioPanelTakesTab(const Session& session) {
@@ -410,12 +414,10 @@ void drawScenarioPanel(PanelContext& context) {
   RowFocus& focus = scenarioFocus();
   focus.beginFrame();
   const std::size_t emitter_count = state.scenario->emitters.size();
-  if (emitter_count > kSearchFrom || state.filter.IsActive()) {
+  if (emitter_count > kSearchFrom || state.searched[0] != '\0') {
     ImGui::SetNextItemWidth(-1);
-    if (ImGui::InputTextWithHint("##search", "search emitters and platforms", state.filter.InputBuf,
-                                 IM_ARRAYSIZE(state.filter.InputBuf))) {
-      state.filter.Build();
-    }
+    ImGui::InputTextWithHint("##search", "search emitters and platforms", state.searched.data(),
+                             state.searched.size());
   }
   // With other panels above, all share the scroll bar of the side.
   const Panels& panels = context.session.panels;
@@ -427,7 +429,9 @@ void drawScenarioPanel(PanelContext& context) {
   const bool is_elsewhere = !ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem |
                                                     ImGuiHoveredFlags_AllowWhenBlockedByPopup) &&
                             !isPopupOpen();
-  for (const SectionGroup& group : state.section_groups) drawSections(context, state, group);
+  bool is_found = false;
+  for (const SectionGroup& group : state.section_groups) is_found |= drawSections(context, state, group);
+  if (!is_found) ImGui::TextDisabled("nothing has such a name");
   focus.endFrame(is_clicked && is_elsewhere);
   if (scrolls) ImGui::EndChild();
 }

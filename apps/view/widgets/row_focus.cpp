@@ -15,6 +15,8 @@
 namespace emscape::view {
 namespace {
 
+constexpr const char* kNumberBegins = "0123456789+-.,";
+
 /// Keys are those of GLFW: ImGuiIO::KeyMap has no Tab while the panel handles it.
 bool isPressed(int key) {
   return ImGui::IsKeyPressed(key, true);
@@ -52,6 +54,21 @@ bool RowFocus::isShown() const {
 
 bool RowFocus::hasKeyboard() const {
   return isShown() && (!focused_.empty() || !typing_.empty());
+}
+
+bool RowFocus::takes(const KeyChord& chord) const {
+  if (!hasKeyboard()) return false;
+  const bool is_space = chord.key == "Space", is_character = is_space || chord.key.size() == 1;
+  if (!is_character || !typing_.empty() || text_of_focused_ == RowText::all) return true;
+  if (text_of_focused_ == RowText::none) return is_space;
+  return std::strchr(kNumberBegins, chord.key[0]) != nullptr;
+}
+
+std::string RowFocus::typed(const std::string& row) const {
+  const bool opens =
+      text_of_focused_ == RowText::all || (text_of_focused_ == RowText::number && !characters_.empty() &&
+                                           std::strchr(kNumberBegins, characters_[0]) != nullptr);
+  return has(row) && opens ? characters_ : std::string();
 }
 
 int RowFocus::steps(const std::string& row) const {

@@ -6,7 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/commands/action.h"
+
 namespace emscape::view {
+
+/// The characters that open the text field of a row: none, those with which a number begins, or all.
+enum class RowText { none, number, all };
 
 /// The focus of the keyboard among rows, each with a name that is unique in the panel. Tab and the arrow keys
 /// move it; Esc and a click elsewhere give the keyboard back to the picture. Dear ImGui's own navigation is
@@ -19,7 +24,10 @@ class RowFocus {
   void endFrame(bool is_clicked_elsewhere);
 
   /// Tells that a row is drawn, in the order of the rows.
-  void add(const std::string& row) { rows_.push_back(row); }
+  void add(const std::string& row, RowText text = RowText::none) {
+    rows_.push_back(row);
+    if (has(row)) text_of_focused_ = text;
+  }
   bool has(const std::string& row) const { return row == focused_; }
   void take(const std::string& row) { focused_ = row; }
   /// Keeps the focus on a row that gets another name. @param renamed  gives the new name of a row
@@ -40,11 +48,14 @@ class RowFocus {
   bool isEscaped(const std::string& row) const { return row == escaped_; }
   /// Steps by the keys Left (-1) and Right (1).
   int steps(const std::string& row) const;
-  /// Characters that were typed in a row without a text field.
-  std::string typed(const std::string& row) const { return has(row) ? characters_ : std::string(); }
+  /// Characters that were typed in a row without a text field and open it.
+  std::string typed(const std::string& row) const;
 
-  /// True if the panel has the keyboard: its keys are not for the picture.
+  /// True if a row has the focus.
   bool hasKeyboard() const;
+  /// True if a key without Ctrl is for the row with the focus: letters are for the picture, unless a text is
+  /// typed.
+  bool takes(const KeyChord& chord) const;
   /// True if the panel was drawn in the last frame.
   bool isShown() const;
 
@@ -61,6 +72,7 @@ class RowFocus {
   void move(int by);
 
   std::vector<std::string> rows_, rows_before_;
+  RowText text_of_focused_ = RowText::none;
   std::string focused_, last_;  // the last one gets the focus by Tab
   std::string escaped_;
   bool moved_ = false;
