@@ -27,7 +27,7 @@ PICTURES = {
     "clutter_mti": "-10:50",
 }
 LEVEL = {"clutter", "clutter_mti"}
-SHIP = ["profile", "ship_duct.yaml", "--emitter", "ship radar", "--to", "51.3,4.15,5", "--plot"]
+SHIP = ["profile", "ship_duct.yaml", "--emitter", "ship radar", "--to", "51.3,-18.85,5", "--plot"]
 COAST = ["vertical", "coast_duct.yaml", "--emitter", "coastal radar", "--azimuth", "300", "--range", "200000", "--max-height", "3000", "-o"]
 MAST = ["vertical", "jacksboro.yaml", "--emitter", "communications mast", "--azimuth", "190", "--range", "14000",
         "--max-height", "900", "--quantity", "power_density_dbwm2", "--threshold", "-90", "-o"]
