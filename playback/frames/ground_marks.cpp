@@ -102,7 +102,7 @@ std::vector<RingCenter> ringCenters(const std::vector<render::Marker>& markers, 
   const GeoFrame geo_frame(frame);
   std::vector<RingCenter> centers;
   for (const render::Marker& marker : markers)
-    centers.push_back({marker.label, geo_frame.toGeodetic(marker.position_m)});
+    if (marker.is_shown) centers.push_back({marker.label, geo_frame.toGeodetic(marker.position_m)});
   return centers;
 }
 

@@ -60,7 +60,9 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
   const LoadedScenario scene{snapshot.scenario, terrain};
   const std::vector<scenario::Platform>& platforms = snapshot.scenario->platforms;
   std::vector<render::Marker> markers;
-  std::vector<bool> has_emitter(platforms.size());
+  std::vector<bool> has_emitter(platforms.size()), has_receiver(platforms.size());
+  for (const scenario::PlacedReceiver& receiver : snapshot.scenario->placed_receivers)
+    has_receiver[static_cast<std::size_t>(receiver.platform)] = true;
   const auto add = [&](std::size_t p, const GeodeticPosition& position) -> render::Marker& {
     const scenario::Platform& platform = platforms[p];
     render::Marker& marker = markers.emplace_back();
@@ -69,18 +71,17 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
     marker.side = affiliationOf(platform.side);
     marker.sidc = platform.sidc;
     marker.moves = platform.moves();
+    // Not outside of its track; one that is absent from a fixed place is drawn there, hollow.
+    marker.is_shown = snapshot.platforms[p].present || !platform.moves();
     const double ground_m = groundHeight(scene, frame, marker.position_m.x, marker.position_m.y).z_m;
     if (!std::isnan(ground_m)) marker.ground_m = ground_m;
     return marker;
   };
-  // Outside of its track; one that is absent from a fixed place is drawn there, hollow.
-  const auto isHidden = [&](std::size_t p) { return !snapshot.platforms[p].present && platforms[p].moves(); };
   for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
     const scenario::Emitter& emitter = snapshot.scenario->emitters[e];
     const scenario::EmitterState& state = snapshot.emitters[e];
     const auto platform = static_cast<std::size_t>(emitter.platform);
     has_emitter[platform] = true;
-    if (isHidden(platform)) continue;
     render::Marker& marker = add(platform, state.position);
     marker.label = emitter.name;
     marker.kind = markerKindOf(emitter.kind);
@@ -90,10 +91,10 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
     if (emitter.antenna->view().kind != scenario::PatternKind::isotropic) marker.beam = state.beam.forward;
   }
   for (std::size_t p = 0; p < platforms.size(); ++p) {
-    if (has_emitter[p] || !platforms[p].side) continue;
-    if (isHidden(p)) continue;
+    if (has_emitter[p]) continue;
     const scenario::PlatformState& state = snapshot.platforms[p];
     render::Marker& marker = add(p, state.position);
+    if (has_receiver[p]) marker.kind = render::MarkerKind::receiver;
     setHeight(marker, platforms[p], state.height_msl_m);
     marker.active = state.present;
   }

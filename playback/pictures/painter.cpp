@@ -445,7 +445,7 @@ void Painter::mark(render::Annotations& annotations, const Frame& frame) const {
     return view_.sides == ShownSides::all || static_cast<int>(view_.sides) == static_cast<int>(side);
   };
   for (render::Marker& marker : annotations.markers) {
-    marker.is_shown = isShown(marker.side);
+    marker.is_shown = marker.is_shown && isShown(marker.side);
     if (view_.labels != Labels::all) {
       marker.detail.clear();
       marker.height_m.reset();

@@ -68,7 +68,7 @@ TEST(FrameSource, AFieldWithATimeGoalIsCompletedWithoutIt) {
   EXPECT_EQ(valuesOf(complete), valuesOf(fresh->frameAt(60)));
 }
 
-TEST(FrameSource, MarkersAreEmittersAndPlatformsWithASide) {
+TEST(FrameSource, MarkersAreEmittersAndPlatformsWithoutOne) {
   const TemporaryFolder folder;
   FrameSelection selection;
   selection.input = quickScenario(
@@ -78,9 +78,14 @@ TEST(FrameSource, MarkersAreEmittersAndPlatformsWithASide) {
         "  - {name: ship, sidc: \"10043000001201000000\", position: {latitude_deg: 52.03, longitude_deg: 5, "
         "height_msl_m: 20}}\n"
         "  - {name: hill, position: {latitude_deg: 52.03, longitude_deg: 5.01, height_agl_m: 2}}\n"
-        "  - {name: mast, side: hostile, "}});
+        "  - {name: late, track: [{t_s: 3, latitude_deg: 52, longitude_deg: 5, height_msl_m: 900}, "
+        "{t_s: 4, latitude_deg: 52, longitude_deg: 5.1, height_msl_m: 900}]}\n"
+        "  - {name: mast, side: hostile, "},
+       {"emitters:\n",
+        "receivers: [{name: post, platform: hill, noise_figure_db: 5, center_frequency_hz: 3.0e9, "
+        "bandwidth_hz: 1.0e6}]\nemitters:\n"}});
   const std::vector<render::Marker> markers = openFrameSource(selection, {})->frame(0).markers;
-  ASSERT_EQ(markers.size(), 3U);
+  ASSERT_EQ(markers.size(), 5U);
   EXPECT_EQ(markers[0].side, render::Affiliation::none);
   EXPECT_EQ(markers[0].detail, "radar 3 GHz");
   EXPECT_DOUBLE_EQ(markers[0].height_m.value(), 20);
@@ -93,6 +98,12 @@ TEST(FrameSource, MarkersAreEmittersAndPlatformsWithASide) {
   EXPECT_EQ(markers[2].detail, "");
   EXPECT_NEAR(markers[2].height_m.value(), 20, 0.5);
   EXPECT_FALSE(markers[2].is_height_above_ground);
+  EXPECT_EQ(markers[3].label, "hill");
+  EXPECT_EQ(markers[3].kind, render::MarkerKind::receiver);
+  EXPECT_TRUE(markers[3].is_shown);
+  EXPECT_EQ(markers[4].label, "late");
+  EXPECT_EQ(markers[4].kind, render::MarkerKind::platform);
+  EXPECT_FALSE(markers[4].is_shown) << "before its track";
 }
 
 TEST(FrameSource, TracksPassThroughMarkersOfTheirEmitters) {

@@ -66,6 +66,31 @@ TEST_F(Selection, AnObjectIsFoundAtItsPixelAndNotBesideIt) {
   EXPECT_EQ(objectAt(session->objects(), at.x + 40, at.y - 40), nullptr);
 }
 
+TEST_F(Selection, WhatIsNotDrawnIsNotFound) {
+  perform(R"({"do":"set","path":"platforms.radar site.side","value":"friendly"})");
+  settle();
+  const render::Projected at = pixelOf(*session, "emitters.radar");
+  ASSERT_NE(objectAt(session->objects(), at.x, at.y), nullptr);
+  perform(R"({"do":"sides","sides":"hostile"})");
+  settle();
+  EXPECT_EQ(objectAt(session->objects(), at.x, at.y), nullptr);
+}
+
+TEST_F(Selection, ATargetAReceiverAndAPlatformAreDrawnAndFound) {
+  for (const char* what : {"target", "receiver", "platform"}) {
+    perform(Json{{"do", "add"}, {"what", what}, {"latitude_deg", 52.02}, {"longitude_deg", 4.97}}.dump());
+    settle();
+    const std::string added = session->selected();
+    const render::Projected at = pixelOf(*session, added);
+    const SceneObject* const found = objectAt(session->objects(), at.x, at.y);
+    ASSERT_NE(found, nullptr) << what;
+    EXPECT_EQ(found->path, added);
+    EXPECT_TRUE(found->pixel) << "a symbol";
+    perform(R"({"do":"revert"})");
+    settle();
+  }
+}
+
 TEST_F(Selection, ItsPositionIsCopiedAndLookedAt) {
   perform(R"({"do":"copy_position"})");
   EXPECT_EQ(error(), "nothing is selected");

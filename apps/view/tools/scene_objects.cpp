@@ -85,37 +85,36 @@ void findPixels(std::vector<SceneObject>& objects, const playback::LivePicture& 
   if (objects.empty()) return;  // volumes without a scenario
   const std::vector<std::optional<render::MarkerPlace>> places =
       render::markerPlaces(picture.size, picture.camera, picture.box, picture.annotations);
-  // The first markers are those of the emitters, in their order.
-  const std::size_t emitters = picture.scenario ? picture.scenario->emitters.size() : 0;
+  // The markers: emitters, then platforms without one, each in the scenario's order.
+  const scenario::Scenario& scenario = *picture.scenario;
+  const std::size_t emitters = scenario.emitters.size();
+  std::vector<std::optional<std::size_t>> markers(scenario.platforms.size());
+  std::vector<bool> has_emitter(scenario.platforms.size());
+  for (const scenario::Emitter& emitter : scenario.emitters)
+    has_emitter[static_cast<std::size_t>(emitter.platform)] = true;
+  for (std::size_t p = 0, next = emitters; p < markers.size(); ++p)
+    if (!has_emitter[p]) markers[p] = next++;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     SceneObject& object = objects[i];
-    object.has_symbol = i < emitters && i < places.size() && places[i];
-    if (object.has_symbol) {
-      object.pixel = places[i];
-      continue;
-    }
-    const render::Projected at =
-        render::project(picture.camera, picture.size, picture.box.toDrawn(object.position_m));
-    if (at.in_front) object.pixel = render::MarkerPlace{at.x, at.y, 0};
+    const std::optional<std::size_t> marker =
+        i < emitters ? i : markers[static_cast<std::size_t>(object.platform)];
+    object.pixel = marker && *marker < places.size() ? places[*marker] : std::nullopt;
   }
 }
 
 const SceneObject* objectAt(const std::vector<SceneObject>& objects, double x, double y) {
   constexpr double kReach_px = 14;
   constexpr double kCloser_px = 0.5;  // positions of one platform differ by rounding
-  for (const bool has_symbol : {true, false}) {
-    const SceneObject* nearest = nullptr;
-    double nearest_px = kReach_px;
-    for (const SceneObject& object : objects) {
-      if (!object.pixel || object.has_symbol != has_symbol) continue;
-      const double away_px = std::hypot(object.pixel->x - x, object.pixel->y - y);
-      if (away_px > nearest_px - (nearest != nullptr ? kCloser_px : 0)) continue;
-      nearest = &object;
-      nearest_px = away_px;
-    }
-    if (nearest != nullptr) return nearest;
+  const SceneObject* nearest = nullptr;
+  double nearest_px = kReach_px;
+  for (const SceneObject& object : objects) {
+    if (!object.pixel) continue;
+    const double away_px = std::hypot(object.pixel->x - x, object.pixel->y - y);
+    if (away_px > nearest_px - (nearest != nullptr ? kCloser_px : 0)) continue;
+    nearest = &object;
+    nearest_px = away_px;
   }
-  return nullptr;
+  return nearest;
 }
 
 bool hasItem(const scenario::Scenario& scenario, const std::string& path) {

@@ -22,9 +22,8 @@ struct SceneObject {
   GeodeticPosition position;
   double height_msl_m = 0;
   std::optional<double> height_agl_m;  ///< none if the ground is not known
-  /// By findPixels(): its symbol in the picture, or its position there; none behind the camera.
+  /// By findPixels(): its symbol in the picture; without one the mouse does not find it.
   std::optional<render::MarkerPlace> pixel;
-  bool has_symbol = false;
 };
 
 /// All of them: emitters in the scenario's order, then receivers, targets and platforms. Empty without a
@@ -33,9 +32,8 @@ std::vector<SceneObject> sceneObjectsOf(const playback::LivePicture& picture);
 /// Sets where they are in a picture of their time.
 void findPixels(std::vector<SceneObject>& objects, const playback::LivePicture& picture);
 
-/// The object under a pixel of the picture: that of the nearest symbol within some pixels, else the nearest
-/// without a symbol; of those at one place the first. Absent ones are not there. @return null if there is
-/// none
+/// The object under a pixel of the picture: that of the nearest symbol within some pixels, of those with one
+/// symbol the first. @return null if there is none
 const SceneObject* objectAt(const std::vector<SceneObject>& objects, double x, double y);
 
 /// True if a scenario has an item with a path: "emitters.NAME", "platforms.NAME", "receivers.NAME" or

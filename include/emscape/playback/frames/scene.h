@@ -23,8 +23,8 @@ std::shared_ptr<const render::HeightField> heightFieldOf(const LoadedScenario& s
 render::MarkerKind markerKindOf(scenario::EmitterKind kind);
 render::Affiliation affiliationOf(const std::optional<scenario::Side>& side);
 
-/// The emitters of an instant, in the scenario's order, and then the platforms that have a side but no
-/// emitter, in the grid's frame.
+/// The emitters of an instant and then the platforms without one, all of them in the scenario's order, in the
+/// grid's frame; those outside of their tracks are not shown.
 /// @param terrain  null: the smooth earth
 std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::TerrainPtr& terrain,
                                       const volume::Grid& grid);
