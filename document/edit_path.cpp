@@ -40,7 +40,7 @@ std::string withoutQuotes(const std::string& text) {
 }
 
 std::string quotedIfNeeded(const std::string& name) {
-  const bool is_plain = !name.empty() && name.front() != '"' && name.find('=') == std::string::npos;
+  const bool is_plain = !name.empty() && name.find_first_of(".\"=\\") == std::string::npos;
   return is_plain ? name : quotedName(name);
 }
 

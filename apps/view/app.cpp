@@ -36,8 +36,8 @@ constexpr double kFitLimit_s = 5;
 constexpr render::ImageSize kUsualSize{1200, 900};
 
 /// With an asterisk for edits or colours that are not saved.
-std::string titleOf(const ViewOptions& options, bool is_unsaved) {
-  const std::filesystem::path path = std::filesystem::path(options.namesake()).lexically_normal();
+std::string titleOf(const std::string& document, bool is_unsaved) {
+  const std::filesystem::path path = std::filesystem::path(document).lexically_normal();
   if (path.empty()) return "emscape";
   const std::filesystem::path named = path.has_filename() ? path : path.parent_path();
   return (is_unsaved ? "* " : "") + named.filename().string() + " — emscape";
@@ -72,8 +72,8 @@ Area fittedInto(const Area& area, render::ImageSize size) {
 App::App(ViewOptions options, std::shared_ptr<MessageLog> messages)
     : log_(options.log.empty() ? EventLog() : EventLog(options.log)),
       script_(options.script.empty() ? Script() : Script(options.script)),
-      window_(titleOf(options, false), options.window_size.value_or(kUsualSize), options.scales_window,
-              options.scale),
+      window_(titleOf(options.namesake(), false), options.window_size.value_or(kUsualSize),
+              options.scales_window, options.scale),
       shares_gpu_(options.share_gpu && render::openGlSharesGpu()),
       files_(std::make_shared<Files>()),
       session_((files_->messages = std::move(messages), makeFirstSession(options))),
@@ -167,7 +167,7 @@ void App::failIfNothingOpens() {
 }
 
 void App::showTitle() {
-  const std::string title = titleOf(session_->options(), session_->isUnsaved());
+  const std::string title = titleOf(session_->document(), session_->isUnsaved());
   if (std::exchange(title_, title) != title) window_.setTitle(title);
 }
 
@@ -200,7 +200,13 @@ bool App::isFitting() const {
 }
 
 void App::handleRequests() {
-  for (const std::string& file : window_.takeDropped()) session_->perform({"open", {{"file", file}}});
+  if (const std::vector<std::string> files = window_.takeDropped(); !files.empty()) {
+    session_->perform({"open", {{"file", files.front()}}});
+    if (files.size() > 1) {
+      session_->tell(fmt::format("the first of {} files is opened; the window shows one input", files.size()),
+                     true);
+    }
+  }
   if (window_.takeCloseRequest()) session_->perform({"quit"});
   files_->is_typing = ImGui::GetIO().WantTextInput;
   if (!opener_.update(session_)) return;
@@ -343,6 +349,7 @@ void App::handleKeys(const std::vector<InputEvent>& events) {
     const bool is_for_panel = dialog || typing || (panels.open && editsText(chord)) ||
                               (in_panel && !chord.control && !isFunctionKey(chord));
     const bool is_global = chord.key == "F1" || chord.key == "F10" || chord.key == "F12" ||
+                           (panels.warnings && toString(chord) == "Ctrl+Shift+W") ||
                            (chord.key == "Esc" && (chord.shift || dialog || (!typing && !in_panel)));
     if (is_for_panel && !is_global) continue;
     const bool flying = window_.buttonDown(GLFW_MOUSE_BUTTON_RIGHT) && !chord.control;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -138,8 +139,21 @@ std::string quantityFault(const std::string& text, const std::string& units,
   if (const std::size_t comma = text.find(','); comma != std::string::npos) {
     std::string other = text;
     other[comma] = '.';
+    std::string whole = text;  // the comma may divide thousands
+    whole.erase(comma, 1);
+    const std::size_t digits_end = std::min(text.size(), text.find_first_not_of("0123456789", comma + 1));
+    if (digits_end == comma + 4 && isRead(whole))
+      return fmt::format("'{}': {} or {}? A comma has no meaning", text, whole, other);
     if (isRead(other)) return fmt::format("'{}': a decimal point is needed, {}", text, other);
   }
+  std::string joined;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool divides = text[i] == ' ' && i > 0 && i + 1 < text.size() &&
+                         std::isdigit(static_cast<unsigned char>(text[i - 1])) != 0 &&
+                         std::isdigit(static_cast<unsigned char>(text[i + 1])) != 0;
+    if (!divides) joined += text[i];
+  }
+  if (joined != text && isRead(joined)) return fmt::format("'{}': a number has no blanks, {}", text, joined);
   char* rest = nullptr;
   const double number = std::strtod(text.c_str(), &rest);
   const bool has_digits = text.find_first_of("0123456789") < static_cast<std::size_t>(rest - text.c_str());

@@ -1,4 +1,4 @@
-#include "apps/view/parts/renamed_items.h"
+#include "playback/editing/renamed_items.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -6,21 +6,8 @@
 #include <string_view>
 #include <unordered_set>
 
-namespace emscape::view {
+namespace emscape::playback {
 namespace {
-
-/// The item to which an edit gives a name.
-std::optional<RenamedItem> renamedBy(const scenario::Edit& edit) {
-  const std::size_t list_end = edit.path.find('.'), item_end = edit.path.rfind('.');
-  if (list_end == item_end || edit.path.substr(item_end) != ".name") return std::nullopt;
-  const auto quoted = nlohmann::json::parse(edit.value, nullptr, false);
-  RenamedItem item;
-  item.list = edit.path.substr(0, list_end);
-  item.now = quoted.is_string() ? quoted.get<std::string>() : edit.value;
-  item.path_before = edit.path.substr(0, item_end);
-  item.path_now = item.list + "." + scenario::pathStep(item.now);
-  return item;
-}
 
 /// True if an edit gives an item's name to a key that refers to items of the list.
 bool isReference(const scenario::Edit& edit, const RenamedItem& item) {
@@ -50,6 +37,8 @@ std::size_t earlierRename(const std::vector<scenario::Edit>& edits, const Rename
     if (removesItem(edits[i], item.list)) break;
     const std::optional<RenamedItem> earlier = renamedBy(edits[i]);
     if (earlier && earlier->path_now == item.path_before) return i;
+    if (earlier ? earlier->path_before == item.path_now : edits[i].path == item.path_now)
+      break;  // another item had the name
   }
   return edits.size();
 }
@@ -71,6 +60,18 @@ void dropRename(std::vector<scenario::Edit>& edits, std::size_t at) {
 }
 
 }  // namespace
+
+std::optional<RenamedItem> renamedBy(const scenario::Edit& edit) {
+  const std::size_t list_end = edit.path.find('.'), item_end = edit.path.rfind('.');
+  if (list_end == item_end || edit.path.substr(item_end) != ".name") return std::nullopt;
+  const auto quoted = nlohmann::json::parse(edit.value, nullptr, false);
+  RenamedItem item;
+  item.list = edit.path.substr(0, list_end);
+  item.now = quoted.is_string() ? quoted.get<std::string>() : edit.value;
+  item.path_before = edit.path.substr(0, item_end);
+  item.path_now = item.list + "." + scenario::pathStep(item.now);
+  return item;
+}
 
 std::vector<RenamedItem> renamedItems(const scenario::Scenario& before, const scenario::Scenario& now) {
   std::vector<RenamedItem> renamed;
@@ -173,4 +174,4 @@ std::set<std::string> editedPaths(const std::vector<scenario::Edit>& edits) {
   return paths;
 }
 
-}  // namespace emscape::view
+}  // namespace emscape::playback

@@ -1,19 +1,23 @@
 /// Items that have another name in an edited scenario.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "emscape/scenario/model/scenario.h"
 
-namespace emscape::view {
+namespace emscape::playback {
 
 struct RenamedItem {
   std::string list;                   ///< emitters, platforms, receivers or targets
   std::string before, now;            ///< names
   std::string path_before, path_now;  ///< "emitters.jammer"
 };
+
+/// The item to which an edit gives a name.
+std::optional<RenamedItem> renamedBy(const scenario::Edit& edit);
 
 /// The items that have another name at the same place of their list. None of lists with more or fewer items,
 /// and none whose name is elsewhere in the list now or whose other name was there before.
@@ -35,4 +39,4 @@ std::vector<scenario::Edit> foldedEdits(const std::vector<scenario::Edit>& edits
 /// The edits without those of a value or an item, where the others have the names that their items have then.
 std::vector<scenario::Edit> editsWithout(const std::vector<scenario::Edit>& edits, const std::string& path);
 
-}  // namespace emscape::view
+}  // namespace emscape::playback

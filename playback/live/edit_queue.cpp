@@ -6,6 +6,7 @@
 
 #include "base/text/failure_text.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "playback/editing/renamed_items.h"
 
 namespace emscape::playback {
 namespace {
@@ -13,6 +14,14 @@ namespace {
 bool haveSamePaths(const std::vector<scenario::Edit>& a, const std::vector<scenario::Edit>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const scenario::Edit& x, const scenario::Edit& y) { return x.path == y.path; });
+}
+
+/// The same scenario with as few edits as have its text: several names in a row are one edit.
+ScenarioPtr withNetEdits(const ScenarioPtr& edited) {
+  const std::vector<scenario::Edit> edits = edited->edits(), net = foldedEdits(edits);
+  if (net.size() == edits.size()) return edited;
+  const ScenarioPtr same = scenario::withEdits(*edited, net);
+  return same->hash == edited->hash ? same : edited;
 }
 
 }  // namespace
@@ -63,7 +72,7 @@ void EditQueue::begin(const EditHistory& history) {
   task_.start([base = history.scenario(), edits = waiting_.front().edits, replaces] {
     Result result{base, nullptr, ""};
     try {
-      result.edited = replaces ? scenario::withEdits(*base, edits) : edited(base, edits);
+      result.edited = replaces ? scenario::withEdits(*base, edits) : withNetEdits(edited(base, edits));
     } catch (const std::exception& error) {
       result.error = failureText(error);
     }

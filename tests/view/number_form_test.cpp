@@ -59,6 +59,10 @@ TEST(NumberForm, RefusalsNameTextAndRange) {
             "altitude: '5 dB': 'dB' is not one of the units m, km, cm, mm, ft, NM, mi");
   EXPECT_EQ(errorOf([&] { altitude.valueOf("1,5 km"); }),
             "altitude: '1,5 km': a decimal point is needed, 1.5 km");
+  EXPECT_EQ(errorOf([&] { altitude.valueOf("1,500 m"); }),
+            "altitude: '1,500 m': 1500 m or 1.500 m? A comma has no meaning");
+  EXPECT_EQ(errorOf([&] { altitude.valueOf("1 500 m"); }),
+            "altitude: '1 500 m': a number has no blanks, 1500 m");
   EXPECT_EQ(errorOf([&] { altitude.valueOf("1e400 m"); }), "altitude: '1e400 m' is too large");
   EXPECT_EQ(errorOf([&] {
               NumberForm{"", "dBW/m2"}.valueOf("5 kW");

@@ -366,6 +366,14 @@ TEST_F(OpenDialog, OpensTheSelectedFileIfNothingIsTyped) {
   EXPECT_TRUE(reports("input", input("b.yaml")));
 }
 
+TEST_F(OpenDialog, AMistypedPathStaysWithItsText) {
+  open(input("a.yaml"));
+  ASSERT_TRUE(xdotool("key ctrl+o sleep 0.4" + type("b.yamk") + " key Return sleep 0.4 key BackSpace" +
+                      type("l") + " key Return"));
+  EXPECT_TRUE(commandsBecome("open open")) << commands();
+  EXPECT_TRUE(reports("input", input("b.yaml")));
+}
+
 TEST_F(OpenDialog, LoadsTheTypedView) {
   writeFile(input("first.view.json"), R"({"schema_version": 1, "mode": "mip"})");
   writeFile(input("second.view.json"), R"({"schema_version": 1, "mode": "mida"})");
@@ -383,6 +391,29 @@ TEST_F(OpenDialog, SavesUnderTheTypedName) {
   EXPECT_TRUE(commandsBecome("set save_as save")) << commands();
   EXPECT_TRUE(comes([&] { return std::filesystem::exists(input("other.yaml")); }));
   EXPECT_TRUE(reports("unsaved", false));
+}
+
+TEST_F(OpenDialog, TheSavedNameIsInTheTitleAndTheNextToBeSaved) {
+  openByHand(input("a.yaml"));
+  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key ctrl+shift+s sleep 0.6" + type("mine.yaml") +
+                      " key Return"));
+  EXPECT_TRUE(comes([&] { return xdotool("search --name '^mine.yaml'"); }));
+  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("8") + " key ctrl+s"));
+  EXPECT_TRUE(commandsBecome("set save_as save set save")) << commands();
+  EXPECT_TRUE(comes([&] { return readFile(input("mine.yaml")).find("losses_db: 8") != std::string::npos; }));
+  EXPECT_FALSE(std::filesystem::exists(input("a.edited.yaml")));
+}
+
+TEST_F(OpenDialog, TabAndArrowsGoThroughTheAnswersOfAQuestion) {
+  openByHand(input("a.yaml"));
+  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key Return"));
+  ASSERT_TRUE(comesToLog("edit"));
+  ASSERT_TRUE(xdotool("key ctrl+q sleep 0.5 key Tab key Tab key Return sleep 0.5"));  // Back
+  EXPECT_TRUE(commandsBecome("set quit")) << commands();
+  ASSERT_TRUE(xdotool("key ctrl+q sleep 0.5 key Right key Return"));  // Discard and quit
+  EXPECT_EQ(program_->wait().status, 0);
+  program_.reset();
+  EXPECT_FALSE(std::filesystem::exists(input("a.edited.yaml")));
 }
 
 // The help over it closes alone; the rest of the window waits.

@@ -1,5 +1,6 @@
 #include "apps/view/session/platform_drag.h"
 #include "apps/view/values/shown_quantity.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "playback/editing/pick.h"
 #include "tests/view/session_sample.h"
 
@@ -120,6 +121,11 @@ TEST(SessionEdits, RangeRingsOfARemovedEmitterEnd) {
   EXPECT_EQ(session->view().range_rings.front().emitter, "radar");
 }
 
+using playback::editedPaths;
+using playback::editsWithout;
+using playback::foldedEdits;
+using Edits = std::vector<scenario::Edit>;
+
 TEST(RenamedItems, HaveTheirEditsUnderTheNewName) {
   EXPECT_THAT(editedPaths({{"emitters.radar.power_w", "5"},
                            {"emitters.radar.name", "\"a.b\""},
@@ -128,8 +134,6 @@ TEST(RenamedItems, HaveTheirEditsUnderTheNewName) {
               testing::ElementsAre("emitters.\"a.b\".losses_db", "emitters.\"a.b\".name",
                                    "emitters.\"a.b\".power_w", "name"));
 }
-
-using Edits = std::vector<scenario::Edit>;
 
 TEST(RenamedItems, RenamesInARowAreOneEdit) {
   EXPECT_EQ(foldedEdits({{"emitters.a.name", "b"}, {"emitters.b.power_w", "5"}, {"emitters.b.name", "c"}}),
@@ -143,6 +147,9 @@ TEST(RenamedItems, RenamesInARowAreOneEdit) {
             (Edits{{"emitters.a.power_w", "5"}}));
   const Edits of_another{{"emitters.a.name", "b"}, {"emitters.b", "null"}, {"emitters.c.name", "b"}};
   EXPECT_EQ(foldedEdits(of_another), of_another);
+  const Edits name_that_was_free{
+      {"emitters.a.name", "b"}, {"emitters.c.name", "d"}, {"emitters.b.name", "c"}};
+  EXPECT_EQ(foldedEdits(name_that_was_free), name_that_was_free) << "another one had it before";
 }
 
 TEST(RenamedItems, OtherEditsStayWithoutARename) {
@@ -152,6 +159,39 @@ TEST(RenamedItems, OtherEditsStayWithoutARename) {
   EXPECT_EQ(editsWithout(edits, "emitters.c"), Edits{});
   EXPECT_EQ(editsWithout({{"platforms.p.name", "q"}, {"emitters.a.platform", "q"}}, "platforms.p.name"),
             Edits{});
+}
+
+TEST(SessionEdits, SeveralNamesInARowAreOneChangeEverywhere) {
+  SessionSample sample("quick.yaml");
+  std::string path = "emitters.radar";
+  for (const char* name : {"Вышка", "a: [b", "say \"x\" 'y' #z", "a.b", "Север 12"}) {
+    const std::string quoted = Json(name).dump();
+    sample.perform(Json{{"do", "set"}, {"path", path + ".name"}, {"value", quoted}}.dump());
+    sample.settle();
+    path = "emitters." + scenario::pathStep(name);
+  }
+  EXPECT_EQ(sample->scenario()->edits(), (Edits{{"emitters.radar.name", "\"Север 12\""}}));
+  EXPECT_EQ(scenario::changeCountOf(*sample->scenario()), "1 value changed");
+  EXPECT_EQ(sample->original()->edits(), Edits{});
+  sample.perform(Json{{"do", "set"}, {"path", path + ".name"}, {"value", "radar"}}.dump());
+  sample.settle();
+  EXPECT_EQ(sample->scenario()->edits(), Edits{});
+  EXPECT_FALSE(sample->hasUnsavedEdits());
+}
+
+TEST(SessionEdits, ARefusalsMessageEndsWithItsReason) {
+  SessionSample sample("quick.yaml");
+  sample.perform(R"({"do":"set","path":"emitters.radar.name","value":"transmitter"})");
+  sample.settle();
+  EXPECT_THAT(sample->notice().text, testing::HasSubstr("transmitter"));
+  sample.perform(R"({"do":"set","path":"emitters.radar.name","value":"north"})");
+  sample.settle();
+  EXPECT_EQ(sample->notice().text, "");
+  sample.perform(R"({"do":"recall","number":5})");
+  EXPECT_THAT(sample->notice().text, testing::HasSubstr("bookmark 5"));
+  sample.perform(R"({"do":"bookmark","number":5})");
+  sample.perform(R"({"do":"recall","number":5})");
+  EXPECT_THAT(sample->notice().text, testing::Not(testing::HasSubstr("empty")));
 }
 
 TEST(SessionEdits, RevertOfARenameKeepsTheOtherEdits) {

@@ -136,7 +136,11 @@ TEST(FileBrowser, EntersFoldersAndComesBackToWhereItWas) {
   browser.goUp();
   ASSERT_TRUE(waitUntilRead(browser));
   EXPECT_EQ(browser.selected(), 1);
-  EXPECT_EQ(browser.choose(std::string("b/new.view.json")), folder / "b/new.view.json");
+  EXPECT_EQ(browser.choose(std::string("b/new.view.json")), std::nullopt);
+  EXPECT_EQ(browser.refused(), "b/new.view.json") << "there is no such file";
+  for (const char* typed : {" b/x.yaml ", "\"b/x.yaml\"", "'b/x.yaml'\n"})
+    EXPECT_EQ(browser.choose(std::string(typed)), folder / "b/x.yaml") << typed;
+  EXPECT_EQ(browser.refused(), "");
   browser.moveSelection(-100);
   EXPECT_EQ(browser.selected(), 0);
 }

@@ -62,6 +62,34 @@ TEST_F(Loss, ARunningRecordingIsAskedForAndCanBeWaitedFor) {
   EXPECT_TRUE(fs::exists(folder_ / "frames/quick_0009.png"));
 }
 
+TEST_F(Loss, TheQuestionAboutARecordingStaysUntilItIsAnswered) {
+  record();
+  shown_.perform(R"({"do":"quit"})");
+  ASSERT_TRUE(shown_.waitUntil([this] { return !shown_.files->recorder.running(); }));
+  ASSERT_TRUE(shown_.settle());
+  EXPECT_FALSE(shown_.window.has_quit);
+  EXPECT_TRUE(shown_->panels.unsaved);
+  shown_.perform(R"({"do":"quit","recording":"wait"})");
+  EXPECT_TRUE(shown_.window.has_quit);
+}
+
+TEST_F(Loss, ASavedNameIsTheDocument) {
+  const std::string input = shown_->document(), file = folder_ / "mine.yaml";
+  shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
+  ASSERT_TRUE(shown_.settle());
+  shown_.perform(Json{{"do", "save"}, {"file", file}}.dump());
+  ASSERT_TRUE(shown_.settle());
+  EXPECT_EQ(shown_->document(), file);
+  EXPECT_EQ(shown_->usualScenarioFile(), file);
+  shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"600"})");
+  ASSERT_TRUE(shown_.settle());
+  shown_.perform(R"({"do":"save"})");
+  EXPECT_FALSE(shown_->panels.replace) << "this window has written it";
+  ASSERT_TRUE(shown_.settle());
+  EXPECT_THAT(readFile(file), HasSubstr("power_w: 600"));
+  EXPECT_FALSE(shown_->hasUnsavedEdits());
+}
+
 TEST_F(Loss, ARecordingCanBeCancelledByTheEnd) {
   record();
   shown_.perform(R"({"do":"quit","recording":"cancel"})");

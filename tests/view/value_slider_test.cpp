@@ -103,12 +103,18 @@ TEST(ValueSlider, APixelOfADragChangesAPowerByTwoPercent) {
   EXPECT_EQ((ValueSlider{0, 30}.dragRate(1 / kPixel)), 1) << "a linear scale follows the mouse";
 }
 
-TEST(EditText, NamesTheThingTheValueAndItsChange) {
+TEST(EditTexts, NameTheThingTheValueAndItsChange) {
   const auto scenario = scenario::loadScenario(emscape::test::shippedScenario("quick.yaml"));
-  const scenario::Edit power{"emitters.radar.power_w", "5000"};
-  EXPECT_THAT(editText(*scenario, power), testing::MatchesRegex("radar, power: .* → 5 kW"));
-  EXPECT_EQ(editText(*scenario, {"emitters.radar.antenna.gain_dbi", "null"}), "radar, gain: by default");
-  EXPECT_EQ(editText(*scenario, {"emitters.nobody.power_w", "1"}), "emitters.nobody.power_w=1");
+  EXPECT_THAT(
+      editTexts(*scenario, {{"emitters.radar.name", "\"Радар\""},
+                            {"emitters.Радар.power_w", "5000"},
+                            {"emitters.Радар.antenna.gain_dbi", "null"},
+                            {"emitters.transmitter", "null"},
+                            {"targets.drone", "{platform: mast}"},
+                            {"emitters.nobody.power_w", "1"}}),
+      testing::ElementsAre("radar, name: radar → Радар", testing::MatchesRegex("radar, power: .* → 5 kW"),
+                           testing::MatchesRegex("radar, gain: .* → by default"), "transmitter: removed",
+                           "drone: added", "emitters.nobody.power_w=1"));
 }
 
 TEST(RefusalText, SpeaksOfValuesNotOfPlacesInFiles) {

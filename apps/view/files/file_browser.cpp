@@ -55,6 +55,16 @@ bool mayChoose(FileBrowser::Purpose purpose, FileKind kind) {
   return false;
 }
 
+/// The path in a typed text, as file managers and shells give it: without blanks and quotes about it.
+std::string pathIn(const std::string& typed) {
+  const std::size_t begin = typed.find_first_not_of(" \t\r\n"), end = typed.find_last_not_of(" \t\r\n");
+  if (begin == std::string::npos) return "";
+  const std::string text = typed.substr(begin, end + 1 - begin);
+  const bool is_quoted =
+      text.size() > 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
+  return is_quoted ? text.substr(1, text.size() - 2) : text;
+}
+
 }  // namespace
 
 FileKind fileKindOf(const fs::path& file, bool is_folder) {
@@ -162,14 +172,20 @@ std::optional<std::string> FileBrowser::choose() {
 }
 
 std::optional<std::string> FileBrowser::choose(const std::string& typed) {
-  if (typed.empty()) return std::nullopt;
-  std::string text = typed;
+  refused_.clear();
+  std::string text = pathIn(typed);
+  if (text.empty()) return std::nullopt;
   const char* home = std::getenv("HOME");
   if (home != nullptr && text.front() == '~' && (text.size() == 1 || text[1] == '/')) {
     text = home + text.substr(1);
   }
   const fs::path path = (folder_ / text).lexically_normal();
   std::error_code ignored;
+  const bool exists = savesFile() ? fs::is_directory(path.parent_path(), ignored) : fs::exists(path, ignored);
+  if (!exists && purpose_ != Purpose::record) {
+    refused_ = typed;
+    return std::nullopt;
+  }
   if (!fs::is_directory(path, ignored)) return path.string();
   enter(path.has_filename() ? path : path.parent_path());
   return std::nullopt;

@@ -67,9 +67,11 @@ class FileBrowser {
   void moveSelection(int rows) { select(selected_ + rows); }
   /// Opens the selected entry: enters a folder, or returns the file.
   std::optional<std::string> choose();
-  /// Opens a typed path, relative to the folder, with ~ for the home: enters a folder, or returns the file,
-  /// which need not exist.
+  /// Opens a typed path, relative to the folder, with ~ for the home, also in quotes: enters a folder, or
+  /// returns the file. One that does not exist, or into no folder, is refused.
   std::optional<std::string> choose(const std::string& typed);
+  /// The typed path that was refused last.
+  const std::string& refused() const { return refused_; }
 
  private:
   struct Listing {
@@ -85,7 +87,7 @@ class FileBrowser {
   bool begins_anew_ = false;
   std::string left_;  // name of the folder that goUp() left, to be selected
   std::vector<FolderEntry> entries_;
-  std::string error_;
+  std::string error_, refused_;
   int selected_ = 0;
   bool again_ = false;  // another folder was requested meanwhile
   AsyncTasks<Listing> task_;

@@ -34,11 +34,16 @@ std::string importRecordingFile(const std::string& file, std::string& note) {
     try {
       return interop::importRecording(recorded, options);
     } catch (const Error& error) {
-      const bool lacks_database =
-          options.emitters.empty() && error.message().find("--emitters") != std::string::npos;
-      if (!lacks_database) throw;
-      throw Error(error.code(), error.location(),
-                  error.message() + "; the window reads the database " + database);
+      if (error.message().rfind("no emitter is left", 0) != 0) throw;
+      const std::string known =
+          options.emitters.empty() ? "the starter set" : fs::path(options.emitters).filename().string();
+      throw Error(
+          error.code(), error.location(),
+          fmt::format(
+              "no object of the recording has an emitter in {}. The window makes emitters by the "
+              "file {}, if there is one (docs/battlefield.md tells what it contains); tracks "
+              "without emitters belong into a scenario: platforms: [{{name: ..., track: {{file: {}}}}}]",
+              known, database, recording.filename().string()));
     }
   }();
   int unmatched = 0;

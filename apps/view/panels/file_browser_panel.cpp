@@ -96,12 +96,10 @@ void openFile(Session& session, const std::optional<std::string>& file) {
     case Purpose::drape:
       performAndClose({"drape", {{"file", *file}}});
       break;
-    case Purpose::places: {
-      std::vector<std::string> files = session.view().places;
-      files.push_back(*file);
-      performAndClose({"places", {{"files", files}}});
+    case Purpose::places:
+      session.panels.open = false;
+      addPlaces(session, *file);
       break;
-    }
     case Purpose::save_scenario: {
       const std::string ending = std::filesystem::path(session.usualScenarioFile()).extension().string();
       session.perform({"save", {{"file", withEnding(*file, ending)}}});
@@ -123,10 +121,10 @@ using TypedPath = std::array<char, 4096>;
 void openChosen(Session& session, TypedPath& typed) {
   FileBrowser& browser = session.files().browser;
   const std::string path = typed.data();
-  typed.fill('\0');
+  const std::optional<std::string> file = path.empty() ? browser.choose() : browser.choose(path);
   // A name to save under stays for the case that the user does not want to replace the file.
-  if (browser.savesFile()) std::snprintf(typed.data(), typed.size(), "%s", path.c_str());
-  openFile(session, path.empty() ? browser.choose() : browser.choose(path));
+  if (!browser.savesFile() && browser.refused().empty()) typed.fill('\0');
+  openFile(session, file);
 }
 
 /// Up, Down and page keys move the selection; while nothing is typed so do Home and End, Right opens it, and
@@ -191,13 +189,18 @@ void drawPathBar(PanelContext& context) {
   ImGui::TextUnformatted(drawable(browser.folder()).c_str());
 }
 
+bool isRefused(const PanelContext& context, const TypedPath& typed) {
+  const std::string& refused = context.session.files().browser.refused();
+  return !refused.empty() && refused == typed.data();
+}
+
 /// Draws the path field and its button. The field has the focus while the dialog has it.
 void drawTypedPath(PanelContext& context, TypedPath& typed) {
   const bool has_focus = ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
   if (has_focus && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-90 * context.scale);
   ImGui::InputTextWithHint("##path", "type a path, from the folder above on", typed.data(), typed.size(),
-                           ImGuiInputTextFlags_AutoSelectAll);
+                           isRefused(context, typed) ? 0 : ImGuiInputTextFlags_AutoSelectAll);
   ImGui::SameLine();
   const char* const button = textOf(context.session.files().browser.purpose()).button;
   if (ImGui::Button(button, {-1, 0}) || (has_focus && isEnterPressed())) openChosen(context.session, typed);
@@ -234,7 +237,11 @@ void drawFileBrowser(PanelContext& context) {
     if (ImGui::Button("Open this folder of volumes")) openFile(session, browser.folder().string());
     ImGui::SameLine();
   }
-  ImGui::TextDisabled("arrows and Enter; Left: up; Esc closes");
+  if (isRefused(context, typed)) {
+    ImGui::TextColored(errorColor(session.theme()), "there is no such file or folder");
+  } else {
+    ImGui::TextDisabled("arrows and Enter; Left: up; Esc closes");
+  }
   if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) handleKeys(session, was_typed);
   endDialog();
 }

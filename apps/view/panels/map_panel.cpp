@@ -1,6 +1,7 @@
 /// Dialogs of the map: go to a position; places, a picture and range rings on the ground.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -71,8 +72,8 @@ void drawPlaces(PanelContext& context) {
   }
   if (textAndButton(context, "places", "file", typed, "Add", FileBrowser::Purpose::places) &&
       typed[0] != '\0') {
-    files.emplace_back(typed.data());
-    session.perform({"places", {{"files", files}}});
+    addPlaces(session, typed.data());
+    typed.fill('\0');
   }
 }
 
@@ -117,6 +118,14 @@ void drawRings(PanelContext& context) {
 }
 
 }  // namespace
+
+void addPlaces(Session& session, const std::string& file) {
+  std::vector<std::string> files = session.view().places;
+  if (std::find(files.begin(), files.end(), file) != files.end())
+    return session.tell(file + " is shown already", true);
+  files.push_back(file);
+  session.perform({"places", {{"files", files}}});
+}
 
 void drawGoToPosition(PanelContext& context) {
   Session& session = context.session;

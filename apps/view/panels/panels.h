@@ -42,6 +42,8 @@ bool scenarioPanelTakesTab(const Session& session);
 /// Colours and opacities: transfer_panel.cpp.
 void drawColorsPanel(PanelContext& context);
 void drawPlanesPanel(PanelContext& context);
+/// Shows places of one more file; one that is shown already is told.
+void addPlaces(Session& session, const std::string& file);
 void drawProbePanel(PanelContext& context);
 /// The locked probe's value over time.
 void drawHistory(PanelContext& context);

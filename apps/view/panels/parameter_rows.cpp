@@ -368,11 +368,17 @@ bool ParameterRows::enterPosition(const Parameter& parameter, const std::string&
 }
 
 /// A number without a unit is in the unit that was shown.
-void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
+void ParameterRows::enter(const Parameter& parameter, const std::string& typed) {
   const std::string& path = parameter.path;
+  const std::size_t begin = typed.find_first_not_of(' ');
+  const std::string text =
+      begin == std::string::npos ? "" : typed.substr(begin, typed.find_last_not_of(' ') + 1 - begin);
   state_.refused = {};
   if (text.empty()) {
-    if (parameter.is_given) set(path, "null");
+    if (parameter.required)
+      state_.refused = {path, typed, parameter.name + ": a text is needed", context_.session.scenario()};
+    else if (parameter.is_given)
+      set(path, "null");
     return;
   }
   if (!isNumber(parameter)) {

@@ -57,7 +57,8 @@ class ParameterRows {
   void handleSlider(const scenario::Parameter& parameter, const ValueSlider& slider, double value);
   void drag(const scenario::Parameter& parameter, const std::string& value);
   bool enterPosition(const scenario::Parameter& parameter, const std::string& text);
-  void enter(const scenario::Parameter& parameter, const std::string& text);
+  /// Takes a text without the blanks at its ends.
+  void enter(const scenario::Parameter& parameter, const std::string& typed);
   void drawBoolean(const scenario::Parameter& parameter);
   void drawChoice(const scenario::Parameter& parameter);
   void drawItems(const scenario::Parameter& parameter);

@@ -12,14 +12,16 @@
 namespace emscape::view {
 namespace {
 
-void drawEdits(const std::vector<scenario::Edit>& edits, const Session& session) {
+/// @param original  without the edits
+void drawEdits(const std::vector<scenario::Edit>& edits, const playback::ScenarioPtr& original,
+               render::Theme theme) {
   constexpr std::size_t kMaxLines = 6;
-  const playback::ScenarioPtr scenario = session.scenario();
-  ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(session.theme()));
-  for (std::size_t i = 0; i < edits.size() && i < kMaxLines; ++i) {
-    ImGui::BulletText("%s", drawable(scenario ? editText(*scenario, edits[i]) : toString(edits[i])).c_str());
-  }
-  if (edits.size() > kMaxLines) ImGui::Text("and %zu more", edits.size() - kMaxLines);
+  if (!original) return;
+  const std::vector<std::string> texts = editTexts(*original, edits);
+  ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(theme));
+  for (std::size_t i = 0; i < texts.size() && i < kMaxLines; ++i)
+    ImGui::BulletText("%s", drawable(texts[i]).c_str());
+  if (texts.size() > kMaxLines) ImGui::Text("and %zu more", texts.size() - kMaxLines);
   ImGui::PopStyleColor();
 }
 
@@ -40,15 +42,12 @@ void drawRestoreQuestion(PanelContext& context) {
                   kept.state.edits.size(), kept.state.edits.size() == 1 ? "" : "s",
                   minuteText(kept.written_utc))
           .c_str());
-  drawEdits(kept.state.edits, session);
+  drawEdits(kept.state.edits, session.original(), session.theme());
   if (kept.input_changed) {
     ImGui::TextUnformatted("The file was written since: edits that do not apply any more are left out.");
   }
   ImGui::Spacing();
-  if (defaultButton("Restore")) perform(context, R"({"do":"restore"})");
-  if (ImGui::Button("Discard")) perform(context, R"({"do":"discard"})");
-  ImGui::SameLine();
-  if (ImGui::Button("Later (Esc)")) session.panels.restore = false;
+  const int answer = drawAnswers(context, kept.written_utc, {"Restore", "Discard", "Later (Esc)"}, 0);
   ImGui::TextDisabled("Later: it is kept until it is restored or discarded (menu File).");
   if (kept.others > 0) {
     ImGui::TextDisabled("%s",
@@ -57,6 +56,9 @@ void drawRestoreQuestion(PanelContext& context) {
                             .c_str());
   }
   endDialog();
+  if (answer == 0) perform(context, R"({"do":"restore"})");
+  if (answer == 1) perform(context, R"({"do":"discard"})");
+  if (answer == 2) session.panels.restore = false;
 }
 
 void drawChangedFiles(PanelContext& context, const Area& picture) {
@@ -90,28 +92,37 @@ void drawChangedFiles(PanelContext& context, const Area& picture) {
 
 namespace {
 
-/// Asks about a running recording.
-void drawRecordingQuestion(PanelContext& context, const Json& answers) {
+/// Quits with a further answer.
+void quitWith(Session& session, const char* question, const char* answer) {
+  Json answers = session.quitAnswers();
+  answers[question] = answer;
+  session.perform({"quit", answers});
+}
+
+/// Asks about a recording that runs, or has ended while it was asked.
+void drawRecordingQuestion(PanelContext& context, bool is_running) {
   Session& session = context.session;
   const Recorder::Progress progress = session.files().recorder.progress();
   ImGui::TextUnformatted(
-      progress.total > 0 ? fmt::format("A recording is {} of {}:", progress.pictures, progress.total).c_str()
-                         : "A recording is being opened:");
+      !is_running ? "The recording has ended:"
+      : progress.total > 0
+          ? fmt::format("A recording is {} of {}:", progress.pictures, progress.total).c_str()
+          : "A recording is being opened:");
   ImGui::TextDisabled("%s", drawable(progress.output).c_str());
   ImGui::Spacing();
-  const auto answer = [&](const char* recording) {
-    Json all = answers;
-    all["recording"] = recording;
-    session.perform({"quit", all});
-  };
-  if (defaultButton("Wait, then quit")) answer("wait");
-  if (ImGui::Button("Cancel it and quit")) answer("cancel");
-  ImGui::SameLine();
-  if (ImGui::Button("Back (Esc)")) session.panels.unsaved = false;
+  const int answer = is_running ? drawAnswers(context, "recording",
+                                              {"Wait, then quit", "Cancel it and quit", "Back (Esc)"}, 0)
+                                : drawAnswers(context, "recorded", {"Quit", "Back (Esc)"}, 0);
+  const bool goes_back = answer == (is_running ? 2 : 1);
+  if (goes_back) {
+    session.panels.unsaved = false;
+  } else if (answer >= 0) {
+    quitWith(session, "recording", answer == 0 ? "wait" : "cancel");
+  }
 }
 
 /// Asks about edits and colours.
-void drawLossQuestion(PanelContext& context, const Json& answers) {
+void drawLossQuestion(PanelContext& context) {
   Session& session = context.session;
   bool replaces = false;
   const auto tellFile = [&](const std::string& file) {
@@ -122,7 +133,7 @@ void drawLossQuestion(PanelContext& context, const Json& answers) {
   };
   if (session.hasUnsavedEdits()) {
     ImGui::TextUnformatted("The scenario has edits that are not saved.");
-    drawEdits(session.viewState().edits, session);
+    drawEdits(session.scenario()->edits(), session.original(), session.theme());
     tellFile(session.usualScenarioFile());
   }
   if (session.hasUnsavedColors()) {
@@ -130,22 +141,14 @@ void drawLossQuestion(PanelContext& context, const Json& answers) {
     tellFile(session.usualColorsFile());
   }
   ImGui::Spacing();
-  const auto answer = [&](const char* edits) {
-    Json all = answers;
-    all["edits"] = edits;
-    session.perform({"quit", all});
-  };
-  if (replaces) {
-    if (ImGui::Button("Replace and quit")) answer("save");
-    ImGui::SameLine();
-  } else if (defaultButton("Save and quit")) {
-    answer("save");
+  const int answer = drawAnswers(
+      context, "loss", {replaces ? "Replace and quit" : "Save and quit", "Discard and quit", "Back (Esc)"},
+      replaces ? 2 : 0);
+  if (answer == 2) {
+    session.panels.unsaved = false;
+  } else if (answer >= 0) {
+    quitWith(session, "edits", answer == 0 ? "save" : "discard");
   }
-  if (ImGui::Button("Discard and quit")) answer("discard");
-  ImGui::SameLine();
-  if (replaces && defaultButton("Back")) session.panels.unsaved = false;
-  if (replaces) ImGui::NewLine();
-  if (!replaces && ImGui::Button("Back (Esc)")) session.panels.unsaved = false;
 }
 
 }  // namespace
@@ -153,13 +156,12 @@ void drawLossQuestion(PanelContext& context, const Json& answers) {
 void drawUnsavedQuestion(PanelContext& context) {
   Session& session = context.session;
   if (!beginDialog(context, "Quit", session.panels.unsaved)) return;
-  const Json answers = session.quitAnswers();
-  const bool asks_recording =
-      session.files().recorder.running() && answers.value("recording", "ask") == "ask";
-  if (asks_recording) {
-    drawRecordingQuestion(context, answers);
+  const bool is_running = session.files().recorder.running();
+  const bool asks_recording = is_running && session.quitAnswers().value("recording", "ask") == "ask";
+  if (asks_recording || !session.isUnsaved()) {
+    drawRecordingQuestion(context, is_running);
   } else {
-    drawLossQuestion(context, answers);
+    drawLossQuestion(context);
   }
   endDialog();
 }
@@ -175,11 +177,10 @@ void drawReplaceQuestion(PanelContext& context) {
                              : "This file exists already:");
   ImGui::TextDisabled("%s", drawable(file).c_str());
   ImGui::Spacing();
-  if (ImGui::Button("Replace")) perform(context, R"({"do":"replace"})");
-  ImGui::SameLine();
-  if (defaultButton("Back")) session.panels.replace = false;
-  ImGui::NewLine();
+  const int answer = drawAnswers(context, file, {"Replace", "Back (Esc)"}, 1);
   endDialog();
+  if (answer == 0) perform(context, R"({"do":"replace"})");
+  if (answer == 1) session.panels.replace = false;
 }
 
 }  // namespace emscape::view

@@ -9,7 +9,7 @@
 
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/parameter_rows.h"
-#include "apps/view/parts/renamed_items.h"
+#include "apps/view/values/edit_text.h"
 #include "apps/view/values/search_text.h"
 #include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
@@ -58,16 +58,17 @@ struct PanelState {
     // A stream brings and renames items, too, but these are not the user's.
     const bool is_edited_further =
         scenario && scenario->file == next->file && scenario->edits() != next->edits();
-    const std::vector<RenamedItem> renamed =
-        is_edited_further ? renamedItems(*scenario, *next) : std::vector<RenamedItem>();
+    const std::vector<playback::RenamedItem> renamed =
+        is_edited_further ? playback::renamedItems(*scenario, *next) : std::vector<playback::RenamedItem>();
     rename(renamed);
     std::unordered_set<std::string> before;
     for (const SectionGroup& group : section_groups) {
-      for (const Section& section : group.sections) before.insert(renamedPath(renamed, section.path));
+      for (const Section& section : group.sections)
+        before.insert(playback::renamedPath(renamed, section.path));
     }
     scenario = next;
     groups.clear();
-    edited = editedPaths(next->edits());
+    edited = playback::editedPaths(next->edits());
     SectionGroup emitters{"Emitters", {"radar", "transmitter", "jammer"}};
     disabled_count = 0;
     for (const scenario::Emitter& emitter : next->emitters) {
@@ -107,9 +108,9 @@ struct PanelState {
   }
 
   /// Sections and rows with another name stay as they are.
-  void rename(const std::vector<RenamedItem>& renamed) {
+  void rename(const std::vector<playback::RenamedItem>& renamed) {
     if (renamed.empty()) return;
-    const auto nameOf = [&](const std::string& path) { return renamedPath(renamed, path); };
+    const auto nameOf = [&](const std::string& path) { return playback::renamedPath(renamed, path); };
     std::unordered_set<std::string> open_now;
     for (const std::string& path : open) open_now.insert(nameOf(path));
     open = std::move(open_now);
@@ -333,12 +334,14 @@ bool drawSections(PanelContext& context, PanelState& state, const SectionGroup& 
 void drawEdits(PanelContext& context, const PanelState& state) {
   if (!ImGui::BeginPopup("edits")) return;
   constexpr std::size_t kMaxCharacters = 60;
+  const std::vector<scenario::Edit> edits = state.scenario->edits();
+  const std::vector<std::string> texts = editTexts(*context.session.original(), edits);
   std::string reverted;
-  for (const scenario::Edit& edit : foldedEdits(state.scenario->edits())) {
-    pushNameId(edit.path);
-    if (ImGui::SmallButton("undo this")) reverted = edit.path;
+  for (std::size_t i = 0; i < edits.size(); ++i) {
+    pushNameId(edits[i].path);
+    if (ImGui::SmallButton("undo this")) reverted = edits[i].path;
     ImGui::SameLine();
-    const std::string text = edit.value == "null" ? edit.path + ": removed" : toString(edit);
+    const std::string& text = texts[i];
     const bool is_long = text.size() > kMaxCharacters;
     std::size_t end = kMaxCharacters;
     while (is_long && (text[end] & 0xC0) == 0x80) --end;  // not within a character
@@ -373,7 +376,7 @@ void drawHead(PanelContext& context, const PanelState& state) {
     ImGui::SameLine(0, 2 * spacing);
     ImGui::TextDisabled("%zu emitter%s off", state.disabled_count, state.disabled_count == 1 ? "" : "s");
   }
-  const std::size_t count = foldedEdits(state.scenario->edits()).size();
+  const std::size_t count = state.scenario->edits().size();
   const std::string changes =
       count == 0 ? "nothing changed" : fmt::format("{} value{} changed …", count, count == 1 ? "" : "s");
   ImGui::BeginDisabled(count == 0);
@@ -385,7 +388,7 @@ void drawHead(PanelContext& context, const PanelState& state) {
 }
 
 bool isDialogOpen(const Panels& panels) {
-  return panels.record || panels.restore || panels.unsaved || panels.open || panels.time;
+  return panels.record || panels.restore || panels.unsaved || panels.replace || panels.open || panels.time;
 }
 
 }  // namespace

@@ -94,9 +94,11 @@ bool Session::perform(const Command& command) {
   try {
     requireAllowed(command);
     verb.run(*this, command);
+    if (std::exchange(refused_, {}) == command.verb && notice_.is_error) notice_ = {};
   } catch (const Error& error) {
     is_accepted = false;
     tell(failureText(error), true);
+    refused_ = command.verb;
   }
   noteSteps();
   status_ = live_.status();
@@ -195,8 +197,7 @@ bool Session::update() {
   if (const auto recorded = files_->recorder.takeOutcome()) {
     if (!recorded->is_error) noteWritten(files_->recorder.progress().output);
     tell(recorded->text, recorded->is_error);
-    const bool is_asked = panels.unsaved && !isUnsaved();  // only about the recording
-    if ((std::exchange(quits_when_recorded_, false) || is_asked) && !recorded->is_error) {
+    if (std::exchange(quits_when_recorded_, false) && !recorded->is_error) {
       perform({"quit", {{"edits", quit_answers_.value("edits", "ask")}}});
     }
   }

@@ -17,7 +17,6 @@
 #include "apps/view/parts/background_jobs.h"
 #include "apps/view/parts/open_panels.h"
 #include "apps/view/parts/program_state.h"
-#include "apps/view/parts/renamed_items.h"
 #include "apps/view/parts/undo_order.h"
 #include "apps/view/parts/view_options.h"
 #include "apps/view/tools/camera_control.h"
@@ -29,6 +28,7 @@
 #include "apps/view/values/value_summary.h"
 #include "playback/editing/autosave.h"
 #include "playback/editing/edit_history.h"
+#include "playback/editing/renamed_items.h"
 #include "playback/editing/timeline.h"
 #include "playback/editing/transfer_editor.h"
 #include "playback/live/edit_queue.h"
@@ -150,6 +150,8 @@ class Session {
   /// True if the program ends as soon as the recording is complete.
   bool quitsWhenRecorded() const { return quits_when_recorded_; }
   const std::optional<Replacing>& replacing() const { return replacing_; }
+  /// The file that the user works on: the input, or what it was saved as.
+  const std::string& document() const { return saved_as_.empty() ? options_.namesake() : saved_as_; }
   /// The files that `save` and `save_transfer` write without a name.
   std::string usualScenarioFile() const;
   std::string usualColorsFile() const;
@@ -203,6 +205,8 @@ class Session {
   render::Theme theme() const { return view_.theme; }
   /// The edited scenario; null for volumes without one, and before the input is open.
   playback::ScenarioPtr scenario() const { return edits_ ? edits_->scenario() : nullptr; }
+  /// The same as it is in its file.
+  playback::ScenarioPtr original() const;
   /// The last edits if they were refused.
   const std::optional<Rejection>& rejection() const { return rejection_; }
   /// The path of what is selected, such as "emitters.jammer"; empty: nothing.
@@ -277,7 +281,8 @@ class Session {
   void requireInput() const;
   void showView(const playback::ViewState& view);
   void noteSavedView(const std::string& file);
-  void saveScenario(const std::string& file);
+  /// @param is_named  by the user: it is the document then
+  void saveScenario(const std::string& file, bool is_named);
   void quit(const Command& command);
   /// Remembers that the program wrote this file.
   void noteWritten(const std::string& file);
@@ -309,8 +314,8 @@ class Session {
   void takeScenario();
   void takePicture();
   void showEdits();
-  void showScenario(const std::vector<RenamedItem>& renamed);
-  void followNames(const std::vector<RenamedItem>& renamed);
+  void showScenario(const std::vector<playback::RenamedItem>& renamed);
+  void followNames(const std::vector<playback::RenamedItem>& renamed);
   /// Takes effect with one of the next updates.
   void changeScenario(const std::vector<scenario::Edit>& edits);
   /// @throws Error (bad_input) if there is none
@@ -401,6 +406,7 @@ class Session {
   std::vector<std::optional<playback::Bookmark>> bookmarks_{9};
 
   std::optional<playback::EditHistory> edits_;
+  mutable playback::ScenarioPtr original_, original_of_;  // the scenario that was asked for last
   playback::EditQueue edit_queue_;
   playback::ScenarioPtr shown_scenario_;  // the scenario of the live view
   struct {
@@ -430,6 +436,7 @@ class Session {
   bool dragging_ = false;  // the colours
   bool touched_ = false;   // by a command since the last update()
   std::shared_ptr<Files> files_;
+  std::string saved_as_;                                  // the file of a name that the user gave
   std::string saved_file_;                                // view file that ...
   std::string saved_text_;                                // ... holds this view
   std::string copied_;                                    // the command that was copied last
@@ -459,6 +466,7 @@ class Session {
   std::vector<std::string> model_warnings_;                          // ... joined
   double joined_at_s_ = -1e9;
   Notice notice_;
+  std::string refused_;  // verb of the last command, if it was refused
   BackgroundJobs jobs_;  // destroyed first
 };
 

@@ -26,7 +26,7 @@ void Session::requireInput() const {
 }
 
 void Session::browse(FileBrowser::Purpose purpose, const std::string& proposed) {
-  files_->browser.open(purpose, std::filesystem::path(options_.namesake()).parent_path(), proposed);
+  files_->browser.open(purpose, std::filesystem::path(document()).parent_path(), proposed);
   panels.open = true;
 }
 
@@ -88,7 +88,7 @@ void Session::takeChangedFiles() {
 
 bool Session::hasUnsavedEdits() const {
   const bool is_other = edits_ && (edits_->isModified() || opened_unsaved_);
-  return is_other && !foldedEdits(edits_->edits()).empty();  // without edits it is as in its file
+  return is_other && !edits_->edits().empty();  // without edits it is as in its file
 }
 
 bool Session::working() const {
@@ -96,21 +96,26 @@ bool Session::working() const {
 }
 
 std::string Session::usualScenarioFile() const {
+  if (!saved_as_.empty()) return saved_as_;
   const std::filesystem::path scenario_file(scenario()->file);
   return besideInput(options_.made_of.empty() ? scenario_file.string() : options_.made_of,
                      ".edited" + scenario_file.extension().string());
 }
 
-void Session::saveScenario(const std::string& file) {
+void Session::saveScenario(const std::string& file, bool is_named) {
   const bool is_imported =
       !options_.made_of.empty() && !options_.stream;  // its tracks are in a folder of ours
-  jobs_.run([this, file, is_imported, saved = scenario()]() -> BackgroundJobs::Finish {
+  jobs_.run([this, file, is_named, is_imported, saved = scenario()]() -> BackgroundJobs::Finish {
     if (is_imported) {
       scenario::saveWithFiles(*saved, file);
     } else {
       scenario::saveScenario(*saved, file);
     }
-    return [this, file, saved] {
+    return [this, file, is_named, saved] {
+      if (is_named) {
+        saved_as_ = file;
+        files_->browser.forgetFolder();
+      }
       if (scenario() == saved) {
         edits_->markSaved();
         opened_unsaved_ = false;
@@ -130,7 +135,9 @@ bool Session::isOccupied() const {
 void Session::takeOver(const Session& before) {
   for (bool Panels::*const panel : {&Panels::help, &Panels::warnings, &Panels::side, &Panels::hidden})
     panels.*panel = before.panels.*panel;
-  if (options_.view.input == before.options_.view.input) selected_ = before.selected_;
+  if (options_.view.input != before.options_.view.input) return;
+  selected_ = before.selected_;
+  saved_as_ = before.saved_as_;
 }
 
 void Session::lookForKeptView() {
@@ -229,7 +236,7 @@ std::vector<Verb> Session::fileVerbs() {
          const std::string file = command.has("file") ? command.text("file") : session.usualScenarioFile();
          if (session.asksToReplace(command, file)) return;
          session.panels.open = false;  // the file browser that asked for the name
-         session.saveScenario(file);
+         session.saveScenario(file, command.has("file"));
        }},
       {"save_as",
        {},

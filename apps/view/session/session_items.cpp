@@ -59,7 +59,8 @@ void Session::enableEmitter(const std::string& name, std::optional<bool> on) {
 
 void Session::revertEdits(const std::string& path) {
   requireScenario();
-  edit_queue_.replace(path.empty() ? std::vector<scenario::Edit>() : editsWithout(edits_->edits(), path));
+  edit_queue_.replace(path.empty() ? std::vector<scenario::Edit>()
+                                   : playback::editsWithout(edits_->edits(), path));
 }
 
 std::vector<Verb> Session::itemVerbs() {

@@ -45,7 +45,7 @@ void Session::quit(const Command& command) {
   panels.unsaved = (records && recording == "ask") || (isUnsaved() && edits == "ask");
   if (panels.unsaved) return;
   if (edits == "save") {
-    if (hasUnsavedEdits()) saveScenario(usualScenarioFile());
+    if (hasUnsavedEdits()) saveScenario(usualScenarioFile(), false);
     if (hasUnsavedColors()) saveTransfer(usualColorsFile());
     Command next{"quit", {{"edits", "ask"}, {"recording", recording}}};
     // A file that could not be written is told, and asked for again.

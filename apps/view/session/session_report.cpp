@@ -71,7 +71,7 @@ Json Session::report() const {
               {"split", view_.split},
               {"shows_edits",
                picture_ && !edit_queue_.isBusy() && (!edits_ || picture_->scenario == edits_->scenario())},
-              {"edits", edits_ ? foldedEdits(edits_->edits()).size() : 0},
+              {"edits", edits_ ? edits_->edits().size() : 0},
               {"unsaved", hasUnsavedEdits()},
               {"input", options_.view.input},
               {"working", working()},

@@ -9,6 +9,7 @@
 #include "apps/view/values/shown_quantity.h"
 #include "base/files/json_writing.h"
 #include "emscape/base/error.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "scenario/file/named_items.h"
 #include "scenario/file/new_items.h"
 #include "scenario/file/parameters.h"
@@ -41,6 +42,13 @@ std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const st
   const std::string path = "platforms." + scenario::pathStep(platform) + ".position.";
   return {{path + "latitude_deg", fmt::format("{:.7f}", latitude_deg)},
           {path + "longitude_deg", fmt::format("{:.7f}", longitude_deg)}};
+}
+
+playback::ScenarioPtr Session::original() const {
+  const playback::ScenarioPtr shown = scenario();
+  if (std::exchange(original_of_, shown) != shown)
+    original_ = shown && shown->source ? scenario::withEdits(*shown, {}) : shown;
+  return original_;
 }
 
 void Session::changeScenario(const std::vector<scenario::Edit>& edits) {
@@ -79,6 +87,7 @@ void Session::takeEdits() {
       tell(rejection_->message, true);
       continue;
     }
+    if (rejection_ && notice_.text == rejection_->message) notice_ = {};
     rejection_.reset();
     for (const scenario::Edit& edit : outcome.edits) {
       log_.write("edit", {{"path", edit.path}, {"value", edit.value}});
@@ -121,9 +130,9 @@ void Session::undoOrRedo(bool undo) {
 
 /// Selection, followed platform, range rings and channel keep their items, which have another name now; those
 /// of items that are gone end.
-void Session::followNames(const std::vector<RenamedItem>& renamed) {
-  selected_ = renamedPath(renamed, selected_);
-  for (const RenamedItem& item : renamed) {
+void Session::followNames(const std::vector<playback::RenamedItem>& renamed) {
+  selected_ = playback::renamedPath(renamed, selected_);
+  for (const playback::RenamedItem& item : renamed) {
     if (item.list == "platforms" && view_.follow == item.before) view_.follow = item.now;
     if (item.list != "emitters") continue;
     for (playback::RangeRings& rings : view_.range_rings) {
@@ -145,11 +154,11 @@ void Session::followNames(const std::vector<RenamedItem>& renamed) {
 }
 
 void Session::showEdits() {
-  showScenario(renamedItems(*shown_scenario_, *edits_->scenario()));
+  showScenario(playback::renamedItems(*shown_scenario_, *edits_->scenario()));
 }
 
 /// @param renamed  items that the user's edits have given another name
-void Session::showScenario(const std::vector<RenamedItem>& renamed) {
+void Session::showScenario(const std::vector<playback::RenamedItem>& renamed) {
   touched_ = true;
   const playback::ScenarioPtr before = std::exchange(shown_scenario_, edits_->scenario());
   view_.edits = edits_->edits();

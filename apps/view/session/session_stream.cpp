@@ -73,7 +73,7 @@ void Session::indexStreamed() {
   playback::PlatformIndices& indices = stream_.indices;
   indices = playback::platformIndices(*shown_scenario_);
   for (const scenario::Platform& platform : stream_.scenario->platforms) {
-    const auto renamed = indices.find(nameAfter(edits_->edits(), "platforms", platform.name));
+    const auto renamed = indices.find(playback::nameAfter(edits_->edits(), "platforms", platform.name));
     if (renamed != indices.end()) indices[platform.name] = renamed->second;
   }
   live_.pose(playback::posesOf(indices, *stream_.poses, stream_.arrival_s), shown_scenario_);

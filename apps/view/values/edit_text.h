@@ -2,14 +2,17 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "emscape/scenario/model/edit.h"
 #include "emscape/scenario/model/scenario.h"
 
 namespace emscape::view {
 
-/// "ridge site, latitude: 36.27 → 36.32 °"; the value before only if the scenario does not have the edit. As
-/// for --set if it is not the edit of one value.
-std::string editText(const scenario::Scenario& scenario, const scenario::Edit& edit);
+/// Edits as changes of a scenario, one text each: "ridge site, latitude: 36.27 → 36.32 °", "jammer: removed";
+/// as for --set where they are not those of one value.
+/// @param original  without the edits
+std::vector<std::string> editTexts(const scenario::Scenario& original,
+                                   const std::vector<scenario::Edit>& edits);
 
 }  // namespace emscape::view

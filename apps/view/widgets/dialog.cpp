@@ -6,9 +6,11 @@
 #include <cstring>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/view/widgets/refusal.h"
+#include "apps/view/widgets/theme.h"
 
 namespace emscape::view {
 namespace {
@@ -161,6 +163,39 @@ bool defaultButton(const char* text) {
   const bool takes_keys = !is_refused && !ImGui::IsWindowAppearing() && !wasPopupOpen() &&
                           isOnTop(ImGui::GetCurrentWindow()->RootWindow->Name);
   return pressed || (takes_keys && isEnterPressed());
+}
+
+int drawAnswers(const PanelContext& context, const std::string& question,
+                const std::vector<const char*>& answers, int first) {
+  const auto count = static_cast<int>(answers.size());
+  ImGuiStorage& storage = *ImGui::GetStateStorage();
+  const ImGuiID asked_id = ImGui::GetID("asked"), marked_id = ImGui::GetID("marked");
+  const auto asked = static_cast<int>(ImGui::GetID(question.c_str()));
+  const bool is_same = !ImGui::IsWindowAppearing() && storage.GetInt(asked_id) == asked;
+  int marked = is_same ? storage.GetInt(marked_id) : first;
+  const bool takes_keys =
+      !ImGui::IsWindowAppearing() && !wasPopupOpen() && isOnTop(ImGui::GetCurrentWindow()->RootWindow->Name);
+  if (takes_keys) {
+    const bool is_tab = isKeyPressed(ImGuiKey_Tab, true), goes_back = ImGui::GetIO().KeyShift;
+    const auto isPressed = [](ImGuiKey a, ImGuiKey b) {
+      return isKeyPressed(a, true) || isKeyPressed(b, true);
+    };
+    if ((is_tab && !goes_back) || isPressed(ImGuiKey_RightArrow, ImGuiKey_DownArrow)) ++marked;
+    if ((is_tab && goes_back) || isPressed(ImGuiKey_LeftArrow, ImGuiKey_UpArrow)) marked += count - 1;
+    marked %= count;
+  }
+  storage.SetInt(asked_id, asked);
+  storage.SetInt(marked_id, marked);
+  int given = takes_keys && isEnterPressed() ? marked : -1;
+  for (int i = 0; i < count; ++i) {
+    if (i > 0) ImGui::SameLine();
+    if (ImGui::Button(answers[static_cast<std::size_t>(i)])) given = i;
+    if (i != marked) continue;
+    ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
+                                        ImGui::ColorConvertFloat4ToU32(accentColor(context.session.theme())),
+                                        ImGui::GetStyle().FrameRounding, 0, 2 * context.scale);
+  }
+  return given;
 }
 
 }  // namespace emscape::view

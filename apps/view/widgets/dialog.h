@@ -3,6 +3,9 @@
 
 #include <imgui.h>
 
+#include <string>
+#include <vector>
+
 #include "apps/view/widgets/panel_context.h"
 
 namespace emscape::view {
@@ -21,5 +24,12 @@ void endDialog();
 
 /// The default button of a dialog, also pressed by Enter if no other dialog was opened after it.
 bool defaultButton(const char* text);
+
+/// The answers to the question of a dialog, in a row: Tab and the arrow keys go from one to the next, Enter
+/// gives the one that is marked, at first the one that loses nothing.
+/// @param question  names the question; with another one the mark is at its first place
+/// @return the index of the answer that is given; -1: none yet
+int drawAnswers(const PanelContext& context, const std::string& question,
+                const std::vector<const char*>& answers, int first);
 
 }  // namespace emscape::view

@@ -39,10 +39,10 @@ MessagePlace placeBeside(const PanelContext& context, float width) {
   const ImGuiWindow& window = *ImGui::GetCurrentWindow()->RootWindow;
   const float middle = (low.y + high.y) / 2, end = window.Pos.x + window.Size.x;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  if (end + gap + width < screen.x) return {{end + gap, middle}, {0, 0.5F}, ImVec2(high.x, middle)};
+  if (end + gap + width < screen.x) return {{end + gap, middle}, {0, 0.5F}, ImVec2(end, middle)};
   const bool is_at_edge = end > screen.x - 1;  // the side panel, with the picture at its left
   const float before = is_at_edge ? legendBegin(context, window.Pos.x) - gap : window.Pos.x - gap;
-  if (before - width > 0) return {{before, middle}, {1, 0.5F}, ImVec2(low.x, middle)};
+  if (before - width > 0) return {{before, middle}, {1, 0.5F}, ImVec2(window.Pos.x, middle)};
   if (low.y > screen.y / 2) return {{low.x, low.y - gap / 2}, {0, 1}, {}};
   return {{low.x, high.y + gap / 2}, {0, 0}, {}};
 }
