@@ -388,7 +388,8 @@ void drawHead(PanelContext& context, const PanelState& state) {
 }
 
 bool isDialogOpen(const Panels& panels) {
-  return panels.record || panels.restore || panels.unsaved || panels.replace || panels.open || panels.time;
+  return panels.record || panels.restore || panels.unsaved || panels.replace || panels.open || panels.time ||
+         panels.position || panels.warnings;
 }
 
 }  // namespace
@@ -415,7 +416,7 @@ void drawScenarioPanel(PanelContext& context) {
   state.follow(context.session.selected());
   drawHead(context, state);
   RowFocus& focus = scenarioFocus();
-  focus.beginFrame();
+  focus.beginFrame(isDialogOpen(context.session.panels));
   const std::size_t emitter_count = state.scenario->emitters.size();
   if (emitter_count > kSearchFrom || state.searched[0] != '\0') {
     ImGui::SetNextItemWidth(-1);

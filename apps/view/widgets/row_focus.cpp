@@ -88,7 +88,7 @@ void RowFocus::move(int by) {
   moved_ = true;
 }
 
-void RowFocus::beginFrame() {
+void RowFocus::beginFrame(bool is_behind_dialog) {
   rows_before_ = std::exchange(rows_, {});
   const bool was_shown = isShown();
   drawn_frame_ = ImGui::GetFrameCount();
@@ -107,6 +107,10 @@ void RowFocus::beginFrame() {
     return;
   }
   const ImGuiIO& io = ImGui::GetIO();
+  if (is_behind_dialog && typing_.empty()) {
+    focused_.clear();
+    return;
+  }
   if (isPopupOpen() || io.KeyCtrl || io.KeyAlt || io.KeySuper) return;
   const bool has_tab = io.KeyMap[ImGuiKey_Tab] < 0 && isPressed(GLFW_KEY_TAB);
   if (!typing_.empty()) {

@@ -19,7 +19,8 @@ enum class RowText { none, number, all };
 class RowFocus {
  public:
   /// Begins a frame of the panel: handles the keys that move the focus.
-  void beginFrame();
+  /// @param is_behind_dialog  the keys are for a dialog, and no row has the focus
+  void beginFrame(bool is_behind_dialog);
   /// Ends the frame. @param is_clicked_elsewhere  outside of the panel
   void endFrame(bool is_clicked_elsewhere);
 
