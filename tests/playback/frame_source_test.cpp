@@ -70,6 +70,7 @@ TEST(FrameSource, AFieldWithATimeGoalIsCompletedWithoutIt) {
 
 TEST(FrameSource, MarkersAreEmittersAndPlatformsWithoutOne) {
   const TemporaryFolder folder;
+  writeFile(folder / "late.csv", "t_s,latitude_deg,longitude_deg,height_msl_m\n3,52,5,900\n4,52,5.1,900\n");
   FrameSelection selection;
   selection.input = quickScenario(
       folder,
@@ -78,8 +79,7 @@ TEST(FrameSource, MarkersAreEmittersAndPlatformsWithoutOne) {
         "  - {name: ship, sidc: \"10043000001201000000\", position: {latitude_deg: 52.03, longitude_deg: 5, "
         "height_msl_m: 20}}\n"
         "  - {name: hill, position: {latitude_deg: 52.03, longitude_deg: 5.01, height_agl_m: 2}}\n"
-        "  - {name: late, track: [{t_s: 3, latitude_deg: 52, longitude_deg: 5, height_msl_m: 900}, "
-        "{t_s: 4, latitude_deg: 52, longitude_deg: 5.1, height_msl_m: 900}]}\n"
+        "  - {name: late, track: {file: late.csv}}\n"
         "  - {name: mast, side: hostile, "},
        {"emitters:\n",
         "receivers: [{name: post, platform: hill, noise_figure_db: 5, center_frequency_hz: 3.0e9, "
