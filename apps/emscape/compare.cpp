@@ -69,7 +69,7 @@ void printHeading(const std::string& a, const std::string& b, const study::MapGr
 
 /// @param a, b  clutter in the losses of each
 void printClutter(const std::string& a, const std::string& b) {
-  print(a == b ? fmt::format("clutter: {}\n", a) : fmt::format("clutter: A: {}; B: {}\n", a, b));
+  print(a == b ? fmt::format("ground cover: {}\n", a) : fmt::format("ground cover: A: {}; B: {}\n", a, b));
 }
 
 void printOutcome(const std::string& report_json, const study::Comparison& comparison,

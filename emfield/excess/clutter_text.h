@@ -15,7 +15,7 @@ bool usesClutterMap(const propagation::ModelSettings& settings);
 /// @param terrain  null: none
 bool hasClutter(const propagation::ModelSettings& settings, const scenario::Terrain* terrain);
 
-/// For the line "clutter: ..." of reports; "none" without any.
+/// For the line "ground cover: ..." of reports; "none" without any.
 std::string clutterText(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
 /// The same for all emitters of a scenario, by name where they differ, and the radars that receive echoes of
 /// clutter, which is something else.

@@ -311,6 +311,21 @@ bool isAt(const PathEnd& end, const PathEnd& other) {
          end.position.longitude_deg == other.position.longitude_deg && end.height_msl_m == other.height_msl_m;
 }
 
+/// Names the trees and buildings of obstacles by the land cover, unless a surface model has their heights.
+void nameCover(PathBudget& budget, const scenario::Terrain* terrain) {
+  const scenario::LandCover* const classes = terrain == nullptr ? nullptr : terrain->landCover();
+  if (classes == nullptr || terrain->view().surface_count > 0) return;
+  const PathProfile& profile = budget.profile;
+  for (PathObstacle& obstacle : budget.obstacles) {
+    if (!(obstacle.cover_m > 0)) continue;
+    const GeodeticPosition at =
+        geodesicDirect(profile.begin.position.latitude_deg, profile.begin.position.longitude_deg,
+                       profile.azimuth_rad, obstacle.range_m);
+    const int number = classes->classAt(at.latitude_deg, at.longitude_deg);
+    if (number >= 0) obstacle.cover_name = classes->classes()[static_cast<std::size_t>(number)].name;
+  }
+}
+
 /// The budget; values that do not depend on the beam are taken from an earlier budget if neither end has
 /// moved.
 PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const PathEnd& point,
@@ -359,7 +374,6 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   const double aperture_m = emitter.antenna->apertureDimension_m(wavelength);
   geometry.far_field_m = 2 * aperture_m * aperture_m / wavelength;
 
-  budget.obstacles = is_still ? earlier->obstacles : pathObstacles(profile, wavelength);
   const bool keeps_excess = is_still && !elevationCut(by_model, state.beam);
   budget.excess =
       keeps_excess ? earlier->excess : pathExcess(scenario, by_model, state.beam, profile, terrain);
@@ -374,6 +388,10 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
          seaWarnings(scenario, by_model, static_cast<double>(lowest_m), partAtSeaLevel(profile.ground_msl_m)))
       budget.warnings.push_back(std::move(warning));
   }
+  if (!is_still && !budget.excess.cover.ranges_m.empty())
+    budget.profile = withCover(profile, budget.excess.cover, scenario.atmosphere);
+  budget.obstacles = is_still ? earlier->obstacles : pathObstacles(profile, wavelength);
+  if (!is_still) nameCover(budget, terrain);
   if (geometry.slant_range_m < geometry.far_field_m) {
     budget.warnings.push_back(fmt::format(
         "the point is {:.0f} m from the antenna, closer than the far-field distance (2 D^2 / lambda = "

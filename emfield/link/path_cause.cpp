@@ -59,6 +59,22 @@ Decision ofLosses(const PathBudget& budget, double ways, double missing_db) {
   return {largest->cause, missing_db, largest->gain_db};
 }
 
+/// Jamming that would hide the echo even without the loss that decides; empty: none.
+std::string jammedToo(const PathBudget& budget, const Decision& decision) {
+  const std::optional<double> to_echo_db = termOf(budget, "jammer_to_signal_db"),
+                              snr_db = termOf(budget, "snr_db"),
+                              needed_db = termOf(budget, "required_snr_db");
+  if (!to_echo_db || !snr_db || !needed_db || budget.jamming.strongest.empty()) return "";
+  // Of a radar that looks where its scan is, the ratio is that of the beam on the target already.
+  const bool is_on_target = decision.cause == PathCause::pointing && !budget.look_pattern_db;
+  const double without_db = *to_echo_db - (is_on_target ? 0 : decision.gain_db);
+  const double response_db = termOf(budget, "filter_response_db").value_or(0);
+  const double echo_db =
+      -ratioToDb(dbToRatio(-(*snr_db + decision.gain_db)) + dbToRatio(without_db - response_db));
+  if (echo_db >= *needed_db) return "";
+  return fmt::format(" Jamming by '{}' decides then: J/S {:.1f} dB.", budget.jamming.strongest, without_db);
+}
+
 }  // namespace
 
 Decision decide(const PathBudget& budget, Quantity quantity, double threshold) {
@@ -111,17 +127,18 @@ std::string decisionText(const PathBudget& budget) {
     case PathCause::clutter:
       if (decision.by_filter)
         return "The filter against clutter decides: it removes the echo of a target of this radial speed.";
-      if (decision.gain_db == 0) return "Clutter decides: its echoes hide the target.";
+      if (decision.gain_db == 0) return "Clutter decides: echoes of land, sea or rain hide the target.";
       [[fallthrough]];
     default:
       break;
   }
   const char* const name = decision.cause == PathCause::terrain   ? "Terrain"
-                           : decision.cause == PathCause::clutter ? "Clutter"
+                           : decision.cause == PathCause::clutter ? "Ground cover"
                                                                   : "Pointing";
   if (std::isinf(decision.gain_db)) return fmt::format("{} decides.", name);
-  return fmt::format("{} decides: without it the {} is {:.1f} dB stronger; {:.1f} dB are missing.", name,
-                     what, decision.gain_db, decision.missing_db);
+  return fmt::format("{} decides: without it the {} is {:.1f} dB stronger; {:.1f} dB are missing.{}", name,
+                     what, decision.gain_db, decision.missing_db,
+                     is_radar && decision.gain_db >= decision.missing_db ? jammedToo(budget, decision) : "");
 }
 
 }  // namespace emscape::emfield

@@ -10,6 +10,7 @@
 #include "emfield/excess/model_check.h"
 #include "emfield/ground/ground_posts.h"
 #include "emscape/emfield/link/path_budget.h"
+#include "propagation/clear_air/row.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
@@ -28,6 +29,29 @@ void addAir(AirLoss air, const PathProfile& profile, PathExcess& excess) {
   const double gases_db = loss_db();
   if (air.gases != nullptr) excess.add("gases", "oxygen and water vapour", gases_db);
   if (all_db > gases_db) excess.add("rain", "rain", all_db - gases_db);
+}
+
+/// The clutter on a path as the model reads it.
+PathCover coverOf(const propagation::ModelSettings& settings, const propagation::TerrainProfile& posts) {
+  const bool is_raised = propagation::isRaisedByClutter(settings),
+             is_p1812 = settings.model == propagation::PropagationModel::p1812;
+  const propagation::ClearAirGround ground = is_p1812
+                                                 ? propagation::clearAirGround(settings.p1812, kClutterFree_m)
+                                                 : propagation::clearAirGround(settings.p452, kClutterFree_m);
+  PathCover cover;
+  bool is_bare = true;
+  for (int i = 0; i < posts.count; ++i) {
+    const bool is_between = isClutterAt(posts.range_m[i], posts.range_m[posts.count - 1]);
+    const float height_m = !is_raised   ? ground.clutterAt(posts, i)
+                           : is_between ? posts.clutter_m(i, 0.0f)
+                                        : 0.0f;
+    cover.height_m.push_back(height_m);
+    is_bare = is_bare && !(height_m > 0);
+  }
+  if (is_bare) return {};
+  cover.ranges_m.assign(posts.range_m, posts.range_m + posts.count);
+  cover.ground_msl_m.assign(posts.height_msl_m, posts.height_msl_m + posts.count);
+  return cover;
 }
 
 }  // namespace
@@ -53,7 +77,8 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
   GroundPosts ground = groundPosts(terrain, regular_m);
   const FastInverse along{profile.range_m, std::sin(profile.azimuth_rad), std::cos(profile.azimuth_rad)};
   int count = profile.count();
-  if (hasClutter(emitter.propagation, terrain)) {
+  const bool has_clutter = hasClutter(emitter.propagation, terrain);
+  if (has_clutter && profile.cover_m.empty()) {
     ground.has_clutter = true;
     ranges_m.resize(ranges_m.size() + kMostClutterPosts);
     heights_msl_m.resize(ranges_m.size());
@@ -65,6 +90,7 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
     readCover(station, ground, along, posts.range_m, posts.height_msl_m, posts.count, cover_m.data());
     posts.cover_m = cover_m.data();
   }
+  if (has_clutter) excess.cover = coverOf(emitter.propagation, posts);
   const bool is_raised = propagation::isRaisedByClutter(emitter.propagation);
   propagation::PathColumn path(posts, profile.range_m, end_msl_m, profile.azimuth_rad);
   inModel(emitter, [&] {

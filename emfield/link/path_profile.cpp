@@ -38,12 +38,30 @@ PathObstacle obstacleAt(const PathProfile& profile, int post, double wavelength_
   obstacle.post = post;
   obstacle.range_m = profile.ranges_m[post];
   obstacle.ground_msl_m = static_cast<double>(profile.ground_msl_m[post]);
+  obstacle.cover_m = profile.coverAt_m(post);
   obstacle.clearance_m = profile.clearance_m(post);
   obstacle.fresnel_radius_m = profile.fresnelRadius_m(post, wavelength_m);
   obstacle.nu = -std::sqrt(2.0) * obstacle.clearanceInFresnelRadii();
   obstacle.knife_edge_db = propagation::knifeEdgeDb(obstacle.nu);
-  obstacle.is_earth_bulge = obstacle.clearance_m < 0 && obstacle.clearance_m + profile.bulge_m(post) >= 0;
+  const double bulge_m = profile.bulge_m(post);
+  obstacle.is_cover = obstacle.cover_m > 0 && obstacle.clearance_m + obstacle.cover_m >= 0;
+  obstacle.is_earth_bulge = !obstacle.is_cover && obstacle.clearance_m < 0 &&
+                            obstacle.clearance_m + bulge_m >= 0 && bulge_m >= profile.relief_m(post);
   return obstacle;
+}
+
+void setRay(PathProfile& profile, const Station& station) {
+  const Refraction& refraction = station.refraction;
+  const propagation::HorizonGeometry<double> geometry{station.effective_height_msl_m,
+                                                      station.effective_earth_radius_m};
+  const double end_msl_m =
+      refraction.effectiveHeight_m(profile.end.height_msl_m, profile.begin.height_msl_m, profile.range_m);
+  const double slope = geometry.slopeTo(end_msl_m, geometry.termsAt(profile.range_m));
+  profile.ray_msl_m.clear();
+  for (const double range_m : profile.ranges_m) {
+    profile.ray_msl_m.push_back(refraction.heightOfImage_m(
+        geometry.heightOn(slope, geometry.termsAt(range_m)), profile.begin.height_msl_m, range_m));
+  }
 }
 
 }  // namespace
@@ -51,6 +69,12 @@ PathObstacle obstacleAt(const PathProfile& profile, int post, double wavelength_
 double PathProfile::fresnelRadius_m(int i, double wavelength_m) const {
   const double d1 = ranges_m[i], d2 = range_m - d1;
   return std::sqrt(wavelength_m * d1 * d2 / range_m);
+}
+
+double PathProfile::relief_m(int i) const {
+  const auto first_m = static_cast<double>(ground_msl_m.front()),
+             last_m = static_cast<double>(ground_msl_m.back());
+  return static_cast<double>(ground_msl_m[i]) - (first_m + (last_m - first_m) * ranges_m[i] / range_m);
 }
 
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
@@ -99,16 +123,16 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
   }
   if (terrain != nullptr) checkTerrain(profile, *terrain);
 
-  const Refraction& refraction = station.refraction;
-  const propagation::HorizonGeometry<double> geometry{station.effective_height_msl_m,
-                                                      station.effective_earth_radius_m};
-  const double end_msl_m =
-      refraction.effectiveHeight_m(end.height_msl_m, begin.height_msl_m, profile.range_m);
-  const double slope = geometry.slopeTo(end_msl_m, geometry.termsAt(profile.range_m));
-  for (const double range_m : profile.ranges_m) {
-    profile.ray_msl_m.push_back(refraction.heightOfImage_m(
-        geometry.heightOn(slope, geometry.termsAt(range_m)), begin.height_msl_m, range_m));
-  }
+  setRay(profile, station);
+  return profile;
+}
+
+PathProfile withCover(PathProfile profile, const PathCover& cover,
+                      const propagation::Atmosphere& atmosphere) {
+  profile.ranges_m = cover.ranges_m;
+  profile.ground_msl_m = cover.ground_msl_m;
+  profile.cover_m = cover.height_m;
+  setRay(profile, makeStation(profile.begin.position, profile.begin.height_msl_m, atmosphere));
   return profile;
 }
 

@@ -42,8 +42,15 @@ std::string valueText(double value) {
   return fmt::format("{:.2f}", std::abs(value) < 0.005 ? 0.0 : value);
 }
 
+std::string coverText(const PathObstacle& obstacle) {
+  return fmt::format("ground cover {:.0f} m high ({})", obstacle.cover_m,
+                     obstacle.cover_name.empty() ? "trees or buildings" : "'" + obstacle.cover_name + "'");
+}
+
 std::string remarkOf(const PathObstacle& obstacle) {
-  std::string remark = obstacle.is_earth_bulge ? "earth's bulge" : "";
+  std::string remark = obstacle.is_earth_bulge ? "earth's bulge"
+                       : obstacle.cover_m > 0  ? coverText(obstacle)
+                                               : "";
   if (obstacle.decides) {
     const char* const what = obstacle.clearanceInFresnelRadii() < 1 ? "decides" : "nearest to the ray";
     remark += (remark.empty() ? "" : "  ") + std::string(what);

@@ -20,10 +20,13 @@ std::vector<ReportLine> geometryLines(const PathBudget& budget);
 /// A term's value with two decimals; "no field" for -infinity, "infinite" for +infinity; 0.00 without a sign.
 std::string valueText(double value);
 
-/// Remark on an obstacle: "earth's bulge", "decides", both or empty.
+/// The trees or buildings on an obstacle: "ground cover 20 m high ('Woods')".
+std::string coverText(const PathObstacle& obstacle);
+
+/// Remark on an obstacle: "earth's bulge" or what stands on it, and "decides".
 std::string remarkOf(const PathObstacle& obstacle);
 
-/// True if ground or the earth's bulge is above the ray.
+/// True if the ground, the earth's bulge, or trees or buildings that the model reads are above the ray.
 bool isBlocked(const PathBudget& budget);
 
 }  // namespace emscape::emfield

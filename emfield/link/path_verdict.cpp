@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "emfield/link/path_report.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/link/path_cause.h"
 
@@ -26,10 +27,13 @@ std::string distanceText(double distance_m) {
 
 std::string thingAt(const PathObstacle& obstacle) {
   constexpr double kSea_m = 0.5;
+  const std::string distance = distanceText(obstacle.range_m);
+  if (obstacle.is_cover) return fmt::format("{} at {}", coverText(obstacle), distance);
   const char* const thing = obstacle.is_earth_bulge                     ? "the earth's bulge"
                             : std::abs(obstacle.ground_msl_m) <= kSea_m ? "the surface"
                                                                         : "the terrain";
-  return fmt::format("{} at {}", thing, distanceText(obstacle.range_m));
+  if (obstacle.cover_m > 0) return fmt::format("{} at {} with {}", thing, distance, coverText(obstacle));
+  return fmt::format("{} at {}", thing, distance);
 }
 
 /// Whether a model has no obstacles: what is above the ray costs nothing, or only as a smooth earth.
@@ -69,9 +73,9 @@ std::string pathText(const PathBudget& budget) {
         "Grazing: {} leaves the ray {:.0f} m ({:.1f} Fresnel radii; 0.6 would be free), and {}",
         thingAt(*decisive), decisive->clearance_m, radii, costText(loss_db));
   }
-  return fmt::format(
-      "Clear: the nearest ground, {}, is {:.0f} m below the ray ({:.1f} Fresnel radii), and {}",
-      distanceText(decisive->range_m) + " away", decisive->clearance_m, radii, costText(loss_db));
+  const std::string nearest = decisive->cover_m > 0 ? coverText(*decisive) : "the nearest ground";
+  return fmt::format("Clear: {}, {} away, is {:.0f} m below the ray ({:.1f} Fresnel radii), and {}", nearest,
+                     distanceText(decisive->range_m), decisive->clearance_m, radii, costText(loss_db));
 }
 
 /// Text for a direction in which the antenna's gain is far below its maximum. For a radar that looks at the
@@ -131,8 +135,12 @@ std::string detectionText(const PathBudget& budget) {
   else if (with_clutter != nullptr && with_clutter->value < snr_db - 0.5)
     ratios += fmt::format(", with clutter {:.1f} dB", with_clutter->value);
   const BudgetTerm* jamming = budget.find("jammer_to_signal_db");
+  // Of a radar that looks where its scan is, the one is not in the beam of the other.
+  const bool has_two_beams = !budget.look_pattern_db && budget.pointing.pattern_db <= kBeamMisses_db;
   if (jamming != nullptr && jamming->value > kWorthSaying_db)
-    ratios += fmt::format(", J/S {:.1f} dB by {}", jamming->value, jammersText(budget.jamming));
+    ratios += fmt::format("{}, J/S {:.1f} dB by {}{}", has_two_beams ? " where the scan has the beam" : "",
+                          jamming->value, jammersText(budget.jamming),
+                          has_two_beams ? " with the beam on the target" : "");
   return fmt::format("; a target there is detected with probability {:.2f} ({})", probability->value, ratios);
 }
 

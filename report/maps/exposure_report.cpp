@@ -96,7 +96,7 @@ std::string exposureText(const Exposure& exposure) {
             request.look == scenario::RadarAim::target ? "at the platform" : "as their scan points",
             exposure.cross_section);
   }
-  out.add("clutter: {}\n", exposure.clutter);
+  out.add("ground cover: {}\n", exposure.clutter);
   out.add("  {:<22} {:>9} {:>8} {:>8} {:>9} {:>9} {:>14} {:>8} {:>12} {:>11}\n", "emitter", "max", "at s",
           "first s", "reached", "unknown", "longest gap s", "best", "in any look", "from s");
   const auto row = [&](const ExposureSummary& summary, const std::string& best) {

@@ -116,7 +116,7 @@ std::string verticalText(const VerticalDiagram& diagram) {
     out.add("Smooth earth of {:.4g} times its radius; the antenna is {:.1f} m above it\n", diagram.k_factor,
             diagram.station_msl_m);
   }
-  out.add("clutter along the paths: {}\n", diagram.clutter);
+  out.add("ground cover along the paths: {}\n", diagram.clutter);
   out.add("  {:>11} {:>12} {:>14} {:>9}   {}\n", "azimuth deg", "farthest km", "from height m", "covered",
           "contours");
   bool has_edge = false;

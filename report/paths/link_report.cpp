@@ -313,7 +313,7 @@ std::string linksText(const NamedLinks& links) {
   addDetectionSummary(out, links);
   for (const Link& link : links.report.links) addLink(out, links, link);
   for (const Detection& detection : links.report.detections) addDetection(out, links, detection);
-  out.add("\nclutter along the paths: {}\n", emfield::clutterText(*links.scenario));
+  out.add("\nground cover along the paths: {}\n", emfield::clutterText(*links.scenario));
   return out.take();
 }
 

@@ -27,6 +27,7 @@ using render::Weight;
 
 constexpr Ink kSky{{0.925F, 0.955F, 0.985F}};
 constexpr Ink kSea{{0.16F, 0.42F, 0.72F}};
+constexpr Ink kCover{{0.29F, 0.52F, 0.27F}};
 constexpr Ink kZone{{0.98F, 0.72F, 0.20F}, 0.38};
 constexpr Ink kZoneRim{{0.82F, 0.54F, 0.06F}, 0.9};
 constexpr Ink kClearRay{{0.06F, 0.46F, 0.25F}};
@@ -50,6 +51,7 @@ class ProfilePlot {
                       render::kPlotPaper);
     canvas_.rectangle(frame_, kSky);
     drawZone();
+    if (!profile_.cover_m.empty()) drawBody(kCover, [&](int i) { return profile_.topMsl_m(i); });
     drawGround();
     drawGrid();
     drawRay();
@@ -87,7 +89,8 @@ class ProfilePlot {
       const double radius_m = profile_.fresnelRadius_m(i, wavelength());
       const double bulge_m = bulgeAt(profile_.ranges_m[i]);
       lowest = std::min({lowest, groundAt(i) + bulge_m, profile_.ray_msl_m[i] - radius_m + bulge_m});
-      highest = std::max({highest, groundAt(i) + bulge_m, profile_.ray_msl_m[i] + radius_m + bulge_m});
+      highest =
+          std::max({highest, profile_.topMsl_m(i) + bulge_m, profile_.ray_msl_m[i] + radius_m + bulge_m});
     }
     const double span = std::max(highest - lowest, 10.0);
     bottom_m_ = lowest - 0.08 * span;
@@ -95,13 +98,20 @@ class ProfilePlot {
   }
 
   void drawGround() {
+    canvas_.outline(drawBody(render::kPlotGround, [&](int i) { return groundAt(i); }), render::kPlotSurface,
+                    1.6 * unit_, false);
+  }
+
+  /// Fills the plot below a surface. @return the surface
+  template <class HeightOf>
+  std::vector<Point2> drawBody(const Ink& ink, HeightOf heightOf) {
     std::vector<Point2> surface;
-    for (int i = 0; i < profile_.count(); ++i) surface.push_back(at(i, groundAt(i)));
+    for (int i = 0; i < profile_.count(); ++i) surface.push_back(at(i, heightOf(i)));
     std::vector<Point2> body = surface;
     body.push_back(corners()[2]);
     body.push_back(corners()[3]);
-    canvas_.polygon(body, render::kPlotGround);
-    canvas_.outline(surface, render::kPlotSurface, 1.6 * unit_, false);
+    canvas_.polygon(body, ink);
+    return surface;
   }
 
   /// Lines of equal height, which curve with the earth, and of equal range.
@@ -167,16 +177,17 @@ class ProfilePlot {
   }
 
   void drawObstacle(const PathObstacle& obstacle) {
-    const Point2 ground = at(obstacle.post, obstacle.ground_msl_m);
+    const Point2 top = at(obstacle.post, profile_.topMsl_m(obstacle.post));
     const Point2 ray = at(obstacle.post, profile_.ray_msl_m[obstacle.post]);
     const Ink ink = obstacle.clearance_m < 0 ? kBlockedRay : kClearRay;
-    canvas_.line(ground, ray, ink, (obstacle.decides ? 2 : 1.2) * unit_);
-    canvas_.disc(ground, (obstacle.decides ? 6 : 4) * unit_, ink);
+    canvas_.line(top, ray, ink, (obstacle.decides ? 2 : 1.2) * unit_);
+    canvas_.disc(top, (obstacle.decides ? 6 : 4) * unit_, ink);
     if (!obstacle.decides) return;
-    label(ground.x, Align::center, ink,
+    label(top.x, Align::center, ink,
           {fmt::format("{:.1f} km: {:.0f} m {} the ray", obstacle.range_m / 1000,
                        std::abs(obstacle.clearance_m), obstacle.clearance_m < 0 ? "above" : "below"),
-           fmt::format("{:.1f} Fresnel radii", std::abs(obstacle.clearanceInFresnelRadii()))});
+           fmt::format("{:.1f} Fresnel radii{}", std::abs(obstacle.clearanceInFresnelRadii()),
+                       obstacle.cover_m > 0 ? "; " + emfield::coverText(obstacle) : "")});
   }
 
   void drawMast(const emfield::PathEnd& end, int post, Align align, const std::string& name) {
@@ -236,10 +247,10 @@ class ProfilePlot {
   double highestBetween(double left, double right) const {
     double highest = frame_.y + frame_.height;
     for (int i = 0; i < profile_.count(); ++i) {
-      const Point2 ground = at(i, groundAt(i));
-      if (ground.x < left || ground.x > right) continue;
+      const Point2 top = at(i, profile_.topMsl_m(i));
+      if (top.x < left || top.x > right) continue;
       const double zone_msl_m = profile_.ray_msl_m[i] + profile_.fresnelRadius_m(i, wavelength());
-      highest = std::min({highest, ground.y, at(i, zone_msl_m).y});
+      highest = std::min({highest, top.y, at(i, zone_msl_m).y});
     }
     return highest;
   }
@@ -255,12 +266,14 @@ class ProfilePlot {
     const auto middle = [](const Rect& box) { return box.y + box.height / 2; };
     entry(profile_.has_terrain ? "ground" : "smooth earth",
           [&](const Rect& box) { canvas_.rectangle(box, render::kPlotGround); });
+    if (!profile_.cover_m.empty())
+      entry("ground cover", [&](const Rect& box) { canvas_.rectangle(box, kCover); });
     entry(isBlocked() ? "ray, blocked" : "ray", [&](const Rect& box) {
       canvas_.line({box.x, middle(box)}, {box.x + box.width, middle(box)},
                    isBlocked() ? kBlockedRay : kClearRay, 2.4 * unit_, isBlocked());
     });
     entry("first Fresnel zone", [&](const Rect& box) { canvas_.rectangle(box, kZone); });
-    entry(budget_.obstacles.size() > 1 ? "obstacles, the largest decides" : "where the ground comes nearest",
+    entry(budget_.obstacles.size() > 1 ? "obstacles, the largest decides" : "nearest to the ray",
           [&](const Rect& box) {
             canvas_.disc({box.x + box.width / 2, middle(box)}, 4 * unit_,
                          isBlocked() ? kBlockedRay : kClearRay);

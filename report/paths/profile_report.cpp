@@ -71,7 +71,11 @@ Json toJson(const PathObstacle& obstacle) {
           {"clearance_fresnel_radii", obstacle.clearanceInFresnelRadii()},
           {"nu", obstacle.nu},
           {"knife_edge_db", obstacle.knife_edge_db},
-          {"kind", obstacle.is_earth_bulge ? "earth" : "terrain"},
+          {"cover_m", obstacle.cover_m},
+          {"cover_name", obstacle.cover_name},
+          {"kind", obstacle.is_cover         ? "cover"
+                   : obstacle.is_earth_bulge ? "earth"
+                                             : "terrain"},
           {"decides", obstacle.decides && obstacle.clearanceInFresnelRadii() < 1}};
 }
 
@@ -96,12 +100,13 @@ void addGeometry(Text& out, const PathBudget& budget) {
 
 void addObstacles(Text& out, const PathBudget& budget) {
   out.add(
-      "\nObstacles: the ground within 0.6 first Fresnel radii of the ray or above it, else the nearest\n");
+      "\nObstacles: the ground, with the trees and buildings that the model reads, within 0.6 first Fresnel "
+      "radii of the ray or above it, else the nearest\n");
   if (budget.obstacles.empty()) {
     out.add("  none: the path is shorter than the spacing of the terrain\n");
     return;
   }
-  out.add("  {:>11} {:>11} {:>11} {:>14} {:>15} {:>9}\n", "distance km", "height m", "clearance m",
+  out.add("  {:>11} {:>11} {:>11} {:>14} {:>15} {:>9}\n", "distance km", "ground m", "clearance m",
           "Fresnel rad. m", "in Fresnel rad.", "alone dB");
   for (const PathObstacle& obstacle : budget.obstacles) {
     const std::string remark = emfield::remarkOf(obstacle);
@@ -256,6 +261,7 @@ Json toJson(const ProfileReport& report) {
           {"profile",
            {{"range_m", budget.profile.ranges_m},
             {"ground_msl_m", budget.profile.ground_msl_m},
+            {"cover_m", budget.profile.cover_m},
             {"ray_msl_m", budget.profile.ray_msl_m}}}};
 }
 
@@ -272,7 +278,7 @@ std::string profileText(const ProfileReport& report) {
   addCompared(out, report.compared, budget);
   const std::string air = airSource(*report.snapshot.scenario);
   if (!air.empty()) out.add("\nAir: {}\n", air);
-  out.add("\nclutter along the path: {}\n",
+  out.add("\nground cover along the path: {}\n",
           emfield::clutterText(*report.snapshot.scenario, emitterOf(report)));
   if (!budget.warnings.empty()) out.add("\n");
   for (const std::string& warning : budget.warnings) out.add("Warning: {}\n", warning);

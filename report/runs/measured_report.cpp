@@ -88,7 +88,7 @@ std::string measuredText(const MeasuredReport& report) {
   Text out;
   out.add("{}: {} of {} rows, {} paths of {:.2f} to {:.2f} km\n", report.file, report.check.selected,
           report.check.rows, paths.size(), nearest->distance_m / 1000, farthest->distance_m / 1000);
-  out.add("clutter: {}\n", report.clutter);
+  out.add("ground cover: {}\n", report.clutter);
   out.add("Computed minus measured loss (dB); negative: the model promises too strong a signal\n\n");
   out.add("{:<20} {:<24}  {:<24}  {:<24}  {}\n", "", "all paths", "clear", "grazing", "blocked");
   const std::string head = fmt::format("{:>5} {:>6} {:>5} {:>5}", "n", "mean", "sd", "rms");

@@ -116,7 +116,7 @@ TEST(Check, ComparesATableOfMeasuredPaths) {
   const ProgramResult text = with({});
   ASSERT_EQ(text.status, 0) << text.err;
   EXPECT_THAT(text.out, HasSubstr("losses.csv: 2 of 3 rows, 2 paths of 3.4"));
-  EXPECT_THAT(text.out, HasSubstr("clutter: none"));
+  EXPECT_THAT(text.out, HasSubstr("ground cover: none"));
   EXPECT_THAT(text.out, testing::ContainsRegex("diffraction +2 +[-+][0-9.]+ +[0-9.]+ +[0-9.]+"));
   const ProgramResult result = with({"--json", "--model", "free_space,itm"});
   const json report = json::parse(result.out);

@@ -133,6 +133,57 @@ TEST(ClutterHeights, OfAWoodOnThePathCostDiffractionAndAreATermOfTheBudget) {
   }
 }
 
+TEST(ClutterHeights, ThatBlockAPathAreAnObstacleWithPlaceAndHeightForModelsThatReadThem) {
+  const GroundWithTrees wood(false);
+  for (const PropagationModel model : {PropagationModel::diffraction, PropagationModel::itm,
+                                       PropagationModel::p1812, PropagationModel::p452}) {
+    const PathBudget budget = budgetTo(mastOf(model, 5), wood, 45.045, 105);
+    ASSERT_EQ(budget.obstacles.size(), 1u) << toString(model);
+    const PathObstacle& trees = budget.obstacles[0];
+    EXPECT_TRUE(trees.is_cover && trees.decides && !trees.is_earth_bulge);
+    EXPECT_NEAR(trees.cover_m, 15, 0.1);
+    EXPECT_NEAR(trees.ground_msl_m, 100, 0.1);
+    EXPECT_GT(trees.range_m, 1980);
+    EXPECT_LT(trees.range_m, 3020);
+    EXPECT_NEAR(trees.clearance_m, -10, 0.7) << "the earth's bulge is below 0.4 m";
+    EXPECT_THAT(budget.verdict,
+                ::testing::MatchesRegex("Blocked: ground cover 15 m high .trees or buildings. at "
+                                        "[23].. km is 1[01] m above the ray .*"))
+        << toString(model);
+    EXPECT_EQ(budget.profile.cover_m.size(), budget.profile.ranges_m.size());
+  }
+  for (const PropagationModel model : {PropagationModel::free_space, PropagationModel::horizon}) {
+    const PathBudget budget = budgetTo(mastOf(model, 5), wood, 45.045, 105);
+    EXPECT_THAT(budget.profile.cover_m, IsEmpty()) << toString(model);
+    EXPECT_THAT(budget.verdict, HasSubstr("Grazing: the terrain at 2.")) << toString(model);
+  }
+}
+
+TEST(ClutterHeights, OfOneHeightAlongThePathAreObstacles) {
+  const MadeTerrain bare(45, 5, 0.2, [](double, double) { return 100.0; });
+  const auto scenario = mastOf(PropagationModel::p1812, 5);
+  scenario->emitters[0].propagation.p1812.clutter_height_m = 12;
+  const PathBudget budget = budgetTo(scenario, bare, 45.045, 105);
+  EXPECT_THAT(budget.verdict,
+              ::testing::StartsWith("Blocked: ground cover 12 m high (trees or buildings) at "));
+  EXPECT_EQ(budget.profile.cover_m.front(), 0) << "around the antenna";
+}
+
+TEST(ClutterHeights, OfAnEarlierBudgetAreReused) {
+  const GroundWithTrees wood(false);
+  const auto scenario = mastOf(PropagationModel::p1812, 5);
+  const PathEnd end{{45.045, 5, 105 + geoidUndulation_m(45.045, 5)}, 105};
+  const auto budgetAt = [&](double t_s, const PathBudget* earlier) {
+    return powerBudget(scenario::snapshotAt(scenario, &wood, t_s), 0, end, PropagationModel::p1812, &wood,
+                       earlier);
+  };
+  const PathBudget first = budgetAt(0, nullptr), second = budgetAt(1, &first), third = budgetAt(2, &second);
+  EXPECT_EQ(third.verdict, budgetAt(2, nullptr).verdict);
+  EXPECT_EQ(third.excess.loss_db, first.excess.loss_db);
+  EXPECT_EQ(third.profile.ranges_m, first.profile.ranges_m);
+  EXPECT_TRUE(third.obstacles.at(0).is_cover);
+}
+
 TEST(ClutterHeights, AreAddedFromFiftyMetresOfTheEndsOn) {
   const double range_m[] = {0, 20, 49, 50, 500, 949, 950, 951, 1000};
   const float cover_m[] = {15, 15, 15, 15, NAN, 15, 15, 15, 15};

@@ -232,6 +232,27 @@ TEST(PathObstacles, CrestsWithAValleyBetweenAreSeparate) {
   EXPECT_TRUE(obstacles[1].decides);
 }
 
+TEST(PathObstacles, AreTheEarthsBulgeOnlyWhereTheReliefOfTheTerrainIsLower) {
+  PathProfile profile = overAWall(0);
+  profile.effective_earth_radius_m = 8.5e6;  // a bulge of 5.88 m in the middle
+  const auto isBulge = [&](double ends_m, double hill_m, double mast_m) {
+    for (int i = 0; i < profile.count(); ++i) {
+      profile.ground_msl_m[i] = static_cast<float>(i == 100 ? ends_m + hill_m : ends_m);
+      profile.ray_msl_m[i] = ends_m + mast_m - profile.bulge_m(i);
+    }
+    const std::vector<PathObstacle> obstacles = pathObstacles(profile, 0.3);
+    EXPECT_EQ(obstacles.size(), 1u);
+    EXPECT_EQ(obstacles.at(0).post, 100);
+    EXPECT_LT(obstacles.at(0).clearance_m, 0);
+    return obstacles.at(0).is_earth_bulge;
+  };
+  EXPECT_TRUE(isBulge(0, 0, 5)) << "the sea";
+  EXPECT_TRUE(isBulge(500, 0, 5)) << "a plateau";
+  EXPECT_TRUE(isBulge(0, 4, 5)) << "low ground";
+  EXPECT_FALSE(isBulge(0, 7, 8)) << "a hill, above the ray by the bulge alone";
+  EXPECT_FALSE(isBulge(0, 4, 3)) << "above the ray without the bulge";
+}
+
 TEST(PathBudget, VerdictNamesTheReason) {
   auto scenario = whiteMountains(PropagationModel::diffraction);
   scenario->terrain.reset();
@@ -306,7 +327,9 @@ TEST(PathBudget, VerdictNamesJamming) {
   jammer.kind = scenario::EmitterKind::jammer;
   jammer.platform = static_cast<int>(scenario->platforms.size()) - 1;
   scenario->emitters.push_back(jammer);
-  EXPECT_THAT(verdict(), ::testing::ContainsRegex("\\(SNR -?[0-9.]+ dB, J/S -?[0-9.]+ dB by 'jammer'\\)\\."));
+  EXPECT_THAT(verdict(),
+              ::testing::ContainsRegex("\\(SNR -?[0-9.]+ dB where the scan has the beam, J/S -?[0-9.]+ dB by "
+                                       "'jammer' with the beam on the target\\)\\."));
   const auto scale = [&](std::size_t emitter, const char* key, double wanted_db) {
     const double now_db = budget().find(key)->value;
     scenario->emitters[emitter].power_w *= dbToRatio(wanted_db - now_db);

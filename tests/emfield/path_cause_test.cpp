@@ -65,10 +65,33 @@ TEST(PathCause, IsJammingClutterRangeOrSilenceWhereTheyTakeTheDetectionAway) {
   budget.terms[2].value = 0.01;
   budget.terms.push_back({"sclnr_db", "", -5, "dB", ""});
   EXPECT_EQ(causeOfDetection(budget), PathCause::clutter);
-  EXPECT_EQ(decisionText(budget), "Clutter decides: its echoes hide the target.");
+  EXPECT_EQ(decisionText(budget), "Clutter decides: echoes of land, sea or rain hide the target.");
   budget.terms.push_back({"filter_response_db", "", -HUGE_VAL, "dB", ""});
   EXPECT_EQ(decisionText(budget),
             "The filter against clutter decides: it removes the echo of a target of this radial speed.");
+}
+
+TEST(PathCause, IsToldWithTheJammingThatDecidesWithoutIt) {
+  PathBudget budget = radarBudget(-50);
+  budget.pointing.pattern_db = -45;
+  budget.jamming = {"jammer", 0, 0};
+  budget.terms.push_back({"jammer_to_signal_db", "", 9, "dB", ""});
+  EXPECT_EQ(decisionText(budget),
+            "Pointing decides: without it the echo is 90.0 dB stronger; 63.0 dB are missing. "
+            "Jamming by 'jammer' decides then: J/S 9.0 dB.");
+  budget.terms.back().value = -20;
+  EXPECT_EQ(decisionText(budget),
+            "Pointing decides: without it the echo is 90.0 dB stronger; 63.0 dB are missing.");
+  budget.pointing.pattern_db = 0;
+  budget.excess.loss_db = 40;
+  budget.terms.back().value = 75;
+  EXPECT_EQ(decisionText(budget),
+            "Terrain decides: without it the echo is 80.0 dB stronger; 63.0 dB are missing. "
+            "Jamming by 'jammer' decides then: J/S -5.0 dB.")
+      << "J/S falls with the echo's loss, to less than the 13 dB that are needed";
+  budget.terms.back().value = 40;
+  EXPECT_EQ(decisionText(budget),
+            "Terrain decides: without it the echo is 80.0 dB stronger; 63.0 dB are missing.");
 }
 
 TEST(PathCause, OfSeveralEmittersIsThatOfTheNearestToDetectingWhateverTheirOrder) {

@@ -65,7 +65,7 @@ class PathPlot {
     for (int i = 0; i < profile_.count(); ++i) {
       const double bulge_m = profile_.bulge_m(i);
       lowest = std::min({lowest, ground_m(i) + bulge_m, ray_m(i) - zone_m(i) + bulge_m});
-      highest = std::max({highest, ground_m(i) + bulge_m, ray_m(i) + zone_m(i) + bulge_m});
+      highest = std::max({highest, profile_.topMsl_m(i) + bulge_m, ray_m(i) + zone_m(i) + bulge_m});
     }
     const double span = std::max(highest - lowest, 10.0);
     low_m_ = lowest - 0.08 * span;
@@ -91,11 +91,15 @@ class PathPlot {
   }
 
   void drawGround(ImDrawList& list) const {
-    const ImU32 ground = is_dark_ ? color(0x7D7058) : color(0x9E8F73);
-    for (int i = 0; i + 1 < profile_.count(); ++i) {
-      const ImVec2 a = at(i, ground_m(i)), b = at(i + 1, ground_m(i + 1));
-      list.AddQuadFilled(a, b, {b.x, bottom_}, {a.x, bottom_}, ground);
-    }
+    const auto drawBody = [&](ImU32 ink, auto heightOf) {
+      for (int i = 0; i + 1 < profile_.count(); ++i) {
+        const ImVec2 a = at(i, heightOf(i)), b = at(i + 1, heightOf(i + 1));
+        list.AddQuadFilled(a, b, {b.x, bottom_}, {a.x, bottom_}, ink);
+      }
+    };
+    if (!profile_.cover_m.empty())
+      drawBody(is_dark_ ? color(0x4F7A4A) : color(0x4A8545), [&](int i) { return profile_.topMsl_m(i); });
+    drawBody(is_dark_ ? color(0x7D7058) : color(0x9E8F73), [&](int i) { return ground_m(i); });
   }
 
   void drawLines(ImDrawList& list) const {
@@ -109,10 +113,9 @@ class PathPlot {
     list.AddLine(at(last, ground_m(last)), at(last, profile_.end.height_msl_m), mast, scale_);
     list.AddCircleFilled(at(last, profile_.end.height_msl_m), 3.5F * scale_, mast);
     for (const emfield::PathObstacle& obstacle : budget_.obstacles) {
-      const ImVec2 ground = at(obstacle.post, obstacle.ground_msl_m);
-      list.AddLine(ground, at(obstacle.post, ray_m(obstacle.post)), ray,
-                   (obstacle.decides ? 1.6F : 1) * scale_);
-      list.AddCircleFilled(ground, (obstacle.decides ? 4 : 2.5F) * scale_, ray);
+      const ImVec2 top = at(obstacle.post, profile_.topMsl_m(obstacle.post));
+      list.AddLine(top, at(obstacle.post, ray_m(obstacle.post)), ray, (obstacle.decides ? 1.6F : 1) * scale_);
+      list.AddCircleFilled(top, (obstacle.decides ? 4 : 2.5F) * scale_, ray);
     }
   }
 

@@ -33,7 +33,7 @@ struct PathRow {
   double power_density_dbwm2 = 0;
   double pattern_db = 0;    ///< emitter's antenna towards the other end, relative to its maximum
   double off_axis_rad = 0;  ///< of the ray from the axis of the emitter's beam
-  bool is_blocked = false;  ///< ground or the earth's bulge is above the ray
+  bool is_blocked = false;  ///< ground, the earth's bulge, trees or buildings are above the ray
   std::string verdict;      ///< one sentence: that of the budget
   std::string path;         ///< the same without antenna and detection
 };

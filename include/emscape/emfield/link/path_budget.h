@@ -18,6 +18,7 @@ namespace emscape::emfield {
 struct PathExcess : propagation::Explanation {
   std::vector<std::string> warnings;
   double clutter_db = 0;  ///< part of the loss that trees and buildings cause, along the path and at its ends
+  PathCover cover;        ///< that the model reads; without posts: nothing stands on the path
 };
 
 /// Uses the functions that compute the field's voxels, except for p528, which computes its curve instead of

@@ -1,6 +1,7 @@
-/// The terrain under one path, the ray above it, and the obstacles.
+/// The terrain under one path, what stands on it, the ray above it, and the obstacles.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "emscape/base/geodesy/geo_frame.h"
@@ -25,17 +26,24 @@ struct PathProfile {
   double range_m = 0;      ///< along the ground, > 0
   std::vector<double> ranges_m;
   std::vector<float> ground_msl_m;
+  /// Height above the ground of the trees and buildings that the model reads; empty: none. See withCover().
+  std::vector<float> cover_m;
   std::vector<double> ray_msl_m;  ///< height of the ray between the ends
   bool at_crossings = false;      ///< see readPathProfile()
   bool has_terrain = false;       ///< false: a smooth earth at mean sea level
 
   int count() const { return static_cast<int>(ranges_m.size()); }
-  /// Clearance (m) of the ray above the ground; negative where the ground is above it.
-  double clearance_m(int i) const { return ray_msl_m[i] - static_cast<double>(ground_msl_m[i]); }
+  double coverAt_m(int i) const { return cover_m.empty() ? 0 : static_cast<double>(cover_m[i]); }
+  /// Height of the ground, or of the trees and buildings on it.
+  double topMsl_m(int i) const { return static_cast<double>(ground_msl_m[i]) + coverAt_m(i); }
+  /// Clearance (m) of the ray above that; negative where the ray is lower.
+  double clearance_m(int i) const { return ray_msl_m[i] - topMsl_m(i); }
   /// Height (m) of the effective earth's bulge above the chord between the ends.
   double bulge_m(int i) const {
     return ranges_m[i] * (range_m - ranges_m[i]) / (2 * effective_earth_radius_m);
   }
+  /// Height (m) of the ground above the line between the grounds below the ends, which curves with the earth.
+  double relief_m(int i) const;
   /// Radius of the first Fresnel zone.
   double fresnelRadius_m(int i, double wavelength_m) const;
 };
@@ -53,17 +61,31 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
                             const scenario::Terrain* terrain, bool at_crossings);
 
-/// A point where the ground enters the ray's first Fresnel zone, or is closest to it.
+/// Trees and buildings along a path.
+struct PathCover {
+  std::vector<double> ranges_m;  ///< of the path's profile, and those where the cover begins
+  std::vector<float> ground_msl_m;
+  std::vector<float> height_m;  ///< above the ground; 0 where nothing stands
+};
+
+/// The profile with posts where trees and buildings begin, and with their heights.
+PathProfile withCover(PathProfile profile, const PathCover& cover, const propagation::Atmosphere& atmosphere);
+
+/// A point where the ground, or what stands on it, enters the ray's first Fresnel zone, or is closest to it.
 struct PathObstacle {
   int post = 0;  ///< of the profile
   double range_m = 0;
   double ground_msl_m = 0;
-  double clearance_m = 0;  ///< negative: the ground is above the ray
+  double cover_m = 0;      ///< height of the trees or buildings on the ground there; 0: none
+  std::string cover_name;  ///< their class in the land cover; empty: not known
+  double clearance_m = 0;  ///< of the ray above ground and cover; negative: they are above the ray
   double fresnel_radius_m = 0;
-  double nu = 0;                ///< P.526-15 eq. (26)
-  double knife_edge_db = 0;     ///< J(nu): the loss of this obstacle alone, as a knife edge
-  bool is_earth_bulge = false;  ///< above the ray only because of the earth's curvature
-  bool decides = false;         ///< the largest nu of all
+  double nu = 0;             ///< P.526-15 eq. (26)
+  double knife_edge_db = 0;  ///< J(nu): the loss of this obstacle alone, as a knife edge
+  /// Above the ray only because of the earth's curvature, which is more than the relief of the terrain.
+  bool is_earth_bulge = false;
+  bool is_cover = false;  ///< trees or buildings are nearest to the ray, and the ground is below it
+  bool decides = false;   ///< the largest nu of all
 
   double clearanceInFresnelRadii() const { return clearance_m / fresnel_radius_m; }
 };
