@@ -213,7 +213,13 @@ class Checker {
     } else if (spec.type == ValueType::number || spec.type == ValueType::integer) {
       if (std::count(spec.choices.begin(), spec.choices.end(), node.text) > 0) return;
       const std::optional<double> number = node.quoted ? std::nullopt : numberOf(node.text);
-      if (!number) return wrongType();
+      if (!number) {
+        const std::optional<double> meant = parseQuantity(node.text, spec.unit);
+        if (!meant || !rangeFault(name, node.text, *meant, spec).empty()) return wrongType();
+        fault(node.position, fmt::format("{} must be {}, not {}; write {:.12g}", name, expectation(spec),
+                                         describe(node), *meant));
+        return;
+      }
       const std::string message = rangeFault(name, node.text, *number, spec);
       if (!message.empty()) fault(node.position, message);
     } else if (spec.type == ValueType::boolean) {
@@ -354,9 +360,13 @@ std::string rangeFault(const std::string& name, const std::string& text, double 
   if (spec.minimum == spec.maximum)  // a version
     return fmt::format("{} is {}; this program reads {}", name, text, spec.maximum);
   constexpr int kDigits = 12;  // limits are shown in full
-  return fmt::format("{} is {}, outside the allowed range {}{}", name, text,
+  // A longitude from 0 to 360.
+  const bool is_east =
+      spec.unit == "deg" && spec.minimum == -180 && spec.maximum == 180 && value > 180 && value <= 360;
+  return fmt::format("{} is {}, outside the allowed range {}{}{}", name, text,
                      spec.minimum_excluded ? "above " : "",
-                     rangeText(spec.minimum, spec.maximum, spec.unit, kDigits));
+                     rangeText(spec.minimum, spec.maximum, spec.unit, kDigits),
+                     is_east ? fmt::format("; write {:.12g}", value - 360) : "");
 }
 
 std::string didYouMean(const std::string& word, const std::vector<std::string>& names, std::string* closest) {

@@ -66,7 +66,7 @@ struct ImpossibleSpeed {
 
 std::optional<ImpossibleSpeed> impossibleSpeedOf(const RecordedObject& object, double seconds_per_unit) {
   const auto& poses = object.poses;
-  if (poses.size() < 3) return std::nullopt;  // of two positions one may be wrong
+  if (poses.size() < 2) return std::nullopt;
   const double shortest_s = std::min(kShortestStep_s, kShortestStep_s * seconds_per_unit);
   std::size_t fast = 0;
   double path_m = 0;
@@ -284,6 +284,7 @@ void TrackRecorder::checkSpeeds() {
                  !impossibleSpeedOf(other, kSecondsPerDay);
         });
     if (may_be_days_ && !utc_begin_s_ && are_days) return takeTimesAsDays();
+    if (object.poses.size() < 3) continue;  // of two positions one may be wrong
     const PoseSample &from = object.poses[speed->first_leg - 1], &to = object.poses[speed->first_leg];
     throw Error(
         ErrorCode::bad_input,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/geodesy/position_text.h"
+#include "base/text/decimal_signs.h"
 #include "emscape/base/error.h"
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
@@ -91,9 +92,11 @@ class TableReader {
                         "separators?",
                         cells.size(), table_.header.size()));
       } else {
+        seeNumbers(cells, lines.line());
         takeRow(cells);
       }
     }
+    decimal_signs_.require();
     if (times_.areUtc()) recorder_.hasUtc();
     recorder_.tellObjectsApartBy(objectsRemedy());
     Recording recording = recorder_.finish();
@@ -105,6 +108,15 @@ class TableReader {
   }
 
  private:
+  /// Where commas separate cells, they are between thousands; see TrackTable::numberOf().
+  void seeNumbers(const std::vector<std::string>& cells, long long line) {
+    if (table_.separator == ',') return;
+    for (const auto& [column, of_table] : table_.columns) {
+      if (column == Column::id || column == Column::position || of_table.index >= cells.size()) continue;
+      decimal_signs_.see(cells[of_table.index], {table_.file, static_cast<int>(line), 0});
+    }
+  }
+
   void takeHeader(std::string_view line, long long number) {
     table_.separator = separatorOf(line);
     table_.header = headerOf(line);
@@ -377,6 +389,7 @@ class TableReader {
   std::string stem_, location_, letters_told_;
   const ReadOptions& options_;
   TrackRecorder recorder_;
+  DecimalSigns decimal_signs_;
   TrackTable table_;
   TableTimes times_{table_, recorder_};
   std::vector<std::string> units_;  ///< the last comment above the header

@@ -13,6 +13,7 @@
 #include "document/text_lines.h"
 #include "emscape/base/error.h"
 #include "propagation/air/moist_air.h"
+#include "scenario/air/sounding.h"
 #include "scenario/terrain/file_names.h"
 
 namespace emscape::scenario {
@@ -170,15 +171,17 @@ class CsvProfiles {
         has(m) ? number(m) : kFlatteningGradient_m * level.height_msl_m + (has(n) ? number(n) : nOfWeather());
     levels_.back().push_back(level);
     if (const std::string fault = faultOfLevel(levels_.back(), levels_.back().size() - 1); !fault.empty()) {
-      fail(cell(height), fault);
+      const std::string contradiction = contradictionOfThickness(weather_);
+      fail(cell(height), contradiction.empty() ? fault : fault + "; " + contradiction);
     }
   }
 
   double nOfWeather() {
     const double temperature_k = number(temperature), humidity_percent = number(humidity);
     highest_humidity_ = std::max(highest_humidity_, humidity_percent);
-    return refractivity_n(number(pressure), temperature_k,
-                          humidity_percent / 100 * saturationPressure_hpa(temperature_k));
+    const double vapour_hpa = humidity_percent / 100 * saturationPressure_hpa(temperature_k);
+    weather_.push_back({row_.line, number(pressure), temperature_k, vapour_hpa, number(height)});
+    return refractivity_n(number(pressure), temperature_k, vapour_hpa);
   }
 
   /// Begins a profile if range or position of the row differ from those of the previous row.
@@ -202,7 +205,11 @@ class CsvProfiles {
     levels_.emplace_back();
   }
 
-  void finishProfile() const {
+  void finishProfile() {
+    const std::string contradiction = contradictionOfThickness(weather_);
+    if (!contradiction.empty())
+      throw Error(ErrorCode::bad_input, {file_, weather_.front().line, 0}, contradiction);
+    weather_.clear();
     if (levels_.empty() || levels_.back().size() >= 2) return;
     throw Error(ErrorCode::bad_input, {file_, row_.line, 0},
                 "the profile that ends here has 1 level; expected 2 or more");
@@ -217,6 +224,7 @@ class CsvProfiles {
   std::vector<double> ranges_m_;
   std::vector<Position> positions_;
   std::vector<std::vector<RefractivityLevel>> levels_;
+  std::vector<SoundingLevel> weather_;  ///< of the last profile
 };
 
 }  // namespace

@@ -63,6 +63,9 @@ std::string soundingText(const std::string& file);
 std::vector<std::string_view> soundingLines(std::string_view text);
 /// @throws Error (bad_input) at a row with a pressure or a temperature that is not of the atmosphere
 void requireAtmosphere(const SoundingLevel& level, const std::string& file);
+/// The contradiction between heights and pressures, as of heights in feet; empty: none.
+/// @param levels  upwards
+std::string contradictionOfThickness(const std::vector<SoundingLevel>& levels);
 /// Geometric height of a geopotential height (m); NaN stays.
 double geometricHeight_m(double geopotential_m);
 

@@ -145,7 +145,7 @@ class Sounding {
  private:
   /// What columns that contradict each other have in common: exchanged ones, heights in feet; empty: none.
   std::string contradictionOfLevels() const {
-    constexpr double kDewPointRange_k = 0.5, kMaxThicknessError = 0.2, kMinThickness_m = 500;
+    constexpr double kDewPointRange_k = 0.5;
     std::size_t wet = 0, known = 0;
     std::vector<SoundingLevel> stated;
     for (const SoundingLevel& level : levels_) {
@@ -159,22 +159,7 @@ class Sounding {
           "the dew point is above the temperature on {} of {} levels of the sounding; are their columns "
           "exchanged?",
           wet, known);
-    if (stated.size() < 2) return "";
-    std::vector<SoundingLevel> by_pressure = stated;
-    for (SoundingLevel& level : by_pressure) {
-      if (std::isnan(level.vapour_hpa)) level.vapour_hpa = 0;
-      if (&level != &by_pressure.front()) level.height_msl_m = std::nan("");
-    }
-    completeHeights(by_pressure);
-    const double rise_m = stated.back().height_msl_m - stated.front().height_msl_m;
-    const double thickness_m = by_pressure.back().height_msl_m - by_pressure.front().height_msl_m;
-    if (!(thickness_m > kMinThickness_m) ||
-        std::abs(rise_m - thickness_m) <= kMaxThicknessError * thickness_m)
-      return "";
-    return fmt::format(
-        "the sounding's heights rise by {:.0f} m from {} to {} hPa, which are {:.0f} m apart by pressure and "
-        "temperature; are the heights in feet?",
-        rise_m, stated.front().pressure_hpa, stated.back().pressure_hpa, thickness_m);
+    return contradictionOfThickness(stated);
   }
 
   void makeProfile() {
@@ -233,6 +218,25 @@ void requireAtmosphere(const SoundingLevel& level, const std::string& file) {
   throw Error(
       ErrorCode::bad_input, {file, level.line, 1},
       fmt::format("{} hPa and {} K are not of the atmosphere", level.pressure_hpa, level.temperature_k));
+}
+
+std::string contradictionOfThickness(const std::vector<SoundingLevel>& stated) {
+  constexpr double kMaxThicknessError = 0.2, kMinThickness_m = 500;
+  if (stated.size() < 2) return "";
+  std::vector<SoundingLevel> by_pressure = stated;
+  for (SoundingLevel& level : by_pressure) {
+    if (std::isnan(level.vapour_hpa)) level.vapour_hpa = 0;
+    if (&level != &by_pressure.front()) level.height_msl_m = std::nan("");
+  }
+  completeHeights(by_pressure);
+  const double rise_m = stated.back().height_msl_m - stated.front().height_msl_m;
+  const double thickness_m = by_pressure.back().height_msl_m - by_pressure.front().height_msl_m;
+  if (!(thickness_m > kMinThickness_m) || std::abs(rise_m - thickness_m) <= kMaxThicknessError * thickness_m)
+    return "";
+  return fmt::format(
+      "the heights rise by {:.0f} m from {} to {} hPa, which are {:.0f} m apart by pressure and "
+      "temperature; are the heights in feet?",
+      rise_m, stated.front().pressure_hpa, stated.back().pressure_hpa, thickness_m);
 }
 
 double geometricHeight_m(double geopotential_m) {

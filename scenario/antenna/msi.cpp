@@ -65,9 +65,11 @@ class MsiReader {
       content_.name = std::string(value.text);
     } else if (const auto band = keyword == "FREQUENCY" ? bandIn(value.text) : std::nullopt) {
       content_.band = *band;
-    } else if (keyword == "TILT" || keyword == "ELECTRICAL_TILT") {
-      // TILT often contains a word (ELECTRICAL, MECHANICAL) instead of an angle.
-      if (const auto tilt_deg = numberOrCommaIn(value.text)) content_.tilt_deg = tilt_deg;
+    } else if (keyword == "TILT" || keyword == "ELECTRICAL_TILT" || keyword == "MECHANICAL_TILT") {
+      // TILT often contains a word (ELECTRICAL, MECHANICAL) instead of an angle, or beside it.
+      for (std::size_t i = 1; i < words.size(); ++i) {
+        if (const auto tilt_deg = numberOrCommaIn(words[i].text)) content_.tilt_deg = tilt_deg;
+      }
     } else if (keyword == "H_WIDTH") {
       content_.width_az_deg = numberOrCommaIn(value.text);
     } else if (keyword == "V_WIDTH") {
@@ -148,17 +150,19 @@ class MsiReader {
     fail(unit, fmt::format("unit '{}' of GAIN; allowed are dBd (the default) and dBi", unit.text));
   }
 
-  /// "900", "(MHz) 900" or "880-960", in MHz; none for other texts.
+  /// "900", "(MHz) 900", "880-960" or "2.9GHz", in MHz without a unit; none for other texts.
   static std::optional<StatedBand> bandIn(std::string_view text) {
     std::string numbers;
-    for (const char c : upperCase(text)) {
-      if (std::string_view("[]() \tMHZ").find(c) == std::string_view::npos) numbers += c;
+    const std::string upper = upperCase(text);
+    const double unit_hz = upper.find("GHZ") != std::string::npos ? 1e9 : 1e6;
+    for (const char c : upper) {
+      if (std::string_view("[]() \tGMHZ").find(c) == std::string_view::npos) numbers += c;
     }
     const std::size_t dash = std::min(numbers.find('-'), numbers.size());
-    const auto low_mhz = numberOrCommaIn(numbers.substr(0, dash));
-    const auto high_mhz = dash < numbers.size() ? numberOrCommaIn(numbers.substr(dash + 1)) : low_mhz;
-    if (!low_mhz || !high_mhz || !(*low_mhz > 0 && *high_mhz >= *low_mhz)) return std::nullopt;
-    return StatedBand{*low_mhz * 1e6, *high_mhz * 1e6};
+    const auto low = numberOrCommaIn(numbers.substr(0, dash));
+    const auto high = dash < numbers.size() ? numberOrCommaIn(numbers.substr(dash + 1)) : low;
+    if (!low || !high || !(*low > 0 && *high >= *low)) return std::nullopt;
+    return StatedBand{*low * unit_hz, *high * unit_hz};
   }
 
   const TextLines& text_;

@@ -260,7 +260,7 @@ void warnOfSpeeds(const Scenario& scenario, const Section& root, ParseContext& c
   warning.addTo(context.problems);
 }
 
-/// Warns about emitters that are never within a region's length of the region, as at a mistyped position.
+/// Warns about emitters that are never in the region, as at a mistyped position.
 void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseContext& context) {
   const GeoFrame frame(scenario.region.origin);
   const Vec3d half = scenario.region.size_m * 0.5;
@@ -275,12 +275,16 @@ void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseC
     double nearest_m = HUGE_VAL;
     for (const TrackPoint& point : scenario.platforms[emitter.platform].track)
       nearest_m = std::min(nearest_m, distance_m(point));
-    if (!(nearest_m > 2 * std::max(half.x, half.y)) || nearest_m > kFarOutside_m) continue;
+    constexpr double kBeside_m = 1;  // rounding of positions
+    if (!(nearest_m > kBeside_m) || nearest_m > kFarOutside_m) continue;
     warning.add(
         sections[i].locationOf("platform"), emitter.name,
-        fmt::format("emitter '{}' is outside the region, {:.1f} km from it: its field in the region is "
-                    "computed, but pictures and maps do not show where it is",
-                    emitter.name, nearest_m / 1000));
+        fmt::format(
+            "emitter '{}' is outside the region, {} from it: its field in the region is computed, but "
+            "pictures and maps do not show where it is",
+            emitter.name,
+            nearest_m < 1000 ? fmt::format("{:.0f} m", nearest_m)
+                             : fmt::format("{:.1f} km", nearest_m / 1000)));
   }
   warning.addTo(context.problems);
 }

@@ -28,6 +28,10 @@ class PlaceReader {
 
   std::vector<Place> read() {
     for (OGRLayerH layer : vectors_.layers()) addLayer(layer);
+    if (places_.empty())
+      fail(
+          "has no place: features need points, lines or areas, a table the columns latitude_deg and "
+          "longitude_deg, or a position");
     return std::move(places_);
   }
 
@@ -105,6 +109,8 @@ class PlaceReader {
 std::vector<Place> readPlaces(const std::string& file) {
   if (const auto points = readPointTable(file)) {
     std::vector<Place> places;
+    if (points->empty())
+      throw Error(ErrorCode::bad_input, {file, 0, 0}, "has no place: the table has no rows");
     for (const NamedPoint& point : *points) {
       places.push_back({Place::Kind::point, point.name, {{{point.latitude_deg, point.longitude_deg, 0}}}});
     }

@@ -10,6 +10,7 @@
 #include "base/files/file_reading.h"
 #include "base/geodesy/position_limits.h"
 #include "base/geodesy/position_text.h"
+#include "base/text/decimal_signs.h"
 #include "document/csv.h"
 #include "document/text_file.h"
 #include "document/text_lines.h"
@@ -141,6 +142,9 @@ class PointReader {
     return point;
   }
 
+  /// After all rows. @throws Error (bad_input)
+  void requireOneDecimalSign() const { decimal_signs_.require(); }
+
   [[noreturn]] void fail(int column, const std::string& message) const {
     throw Error(ErrorCode::bad_input, {file_, row_->line, column}, message);
   }
@@ -148,6 +152,7 @@ class PointReader {
  private:
   double degreesIn(const CsvCell& cell, bool is_latitude) const {
     const char* const what = is_latitude ? "latitude" : "longitude";
+    decimal_signs_.see(cell.text, {file_, row_->line, cell.column});
     std::optional<double> value = document::numberOrCommaIn(cell.text);
     if (!value) value = degreesOfText(cell.text, is_latitude);
     if (!value) {
@@ -191,6 +196,7 @@ class PointReader {
   void readHeight(const PointColumns::Height& of_column, NamedPoint& point) const {
     const CsvCell& cell = row_->cells[of_column.column];
     if (cell.text.empty()) return;
+    decimal_signs_.see(cell.text, {file_, row_->line, cell.column});
     const bool is_used = of_column.column == columns_.heights.front().column;
     const std::optional<double> value = document::numberOrCommaIn(cell.text);
     if (!value && is_used)
@@ -210,6 +216,7 @@ class PointReader {
   const std::string& file_;
   const PointColumns& columns_;
   const CsvRow* row_ = nullptr;
+  mutable DecimalSigns decimal_signs_;
 };
 
 }  // namespace
@@ -274,6 +281,7 @@ std::optional<std::vector<NamedPoint>> readPointTable(const std::string& file,
     }
     points.push_back(points_in.read(row));
   }
+  points_in.requireOneDecimalSign();
   if (others != nullptr) {
     *others = unused;
   } else if (!unused.empty()) {

@@ -25,6 +25,16 @@ double groundHeight_m(const Scenario& scenario, const Terrain* terrain, const Si
   return terrain == nullptr ? std::nan("") : terrain->heightMsl_m(at.latitude_deg, at.longitude_deg);
 }
 
+/// Why there is no ground at a point.
+std::string missingGroundText(const Terrain& terrain, const SitePosition& at) {
+  const GeoBox box = terrain.coverage();
+  const bool is_covered = at.latitude_deg >= box.south_deg && at.latitude_deg <= box.north_deg &&
+                          at.longitude_deg >= box.west_deg && at.longitude_deg <= box.east_deg;
+  return (is_covered ? "the terrain is missing there: void posts, or a gap between the files; "
+                     : "the terrain is missing there; ") +
+         terrain.placeText();
+}
+
 PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Platform& platform,
                       double t_s) {
   const TrackPoint point = pointAt(platform, t_s);
@@ -35,10 +45,10 @@ PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Pl
   state.present = platform.isPresentAt(t_s);
   if (at.height_agl_m) {
     if (std::isnan(ground_m)) {
-      throw Error(ErrorCode::bad_input, platform.location,
-                  fmt::format("{}: its height is given above ground, but {}", whereAndWhen(platform, at, t_s),
-                              terrain == nullptr ? "the terrain was not loaded"
-                                                 : "the terrain is missing there; " + terrain->placeText()));
+      throw Error(
+          ErrorCode::bad_input, platform.location,
+          fmt::format("{}: its height is given above ground, but {}", whereAndWhen(platform, at, t_s),
+                      terrain == nullptr ? "the terrain was not loaded" : missingGroundText(*terrain, at)));
     }
     state.height_msl_m = ground_m + *at.height_agl_m;
   } else {

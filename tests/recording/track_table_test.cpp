@@ -33,6 +33,32 @@ TEST(TrackTable, RowsOfOneTimeFarApartAreRefusedWithTheColumnThatTellsObjectsApa
               HasSubstr("as all times are equal"));
 }
 
+TEST(TrackTable, PointsThatMayBeBetweenThousandsAreRefusedBesideDecimalCommas) {
+  const auto table = [](const std::string& height) {
+    return "time;lat;lon;alt_m\n0;44,3;-71,6;950,5\n30;44,31;-71,6;" + height + "\n60;44,32;-71,6;1.150,5\n";
+  };
+  for (const char* const height : {"1.050", "-1.050", "12.345"}) {
+    EXPECT_THAT(test::errorOf([&] { readAs("s.csv", table(height)); }, ErrorCode::bad_input),
+                HasSubstr(std::string("s.csv:3: '") + height +
+                          "': is its point decimal, or between thousands? Other "
+                          "numbers have decimal commas ('44,3')"));
+  }
+  for (const auto& [height, height_m] :
+       {std::pair("1050", 1050.0), {"1.050,0", 1050.0}, {"0.050", 0.05}, {"1050.5", 1050.5}})
+    EXPECT_EQ(readAs("s.csv", table(height)).objects.at(0).poses.at(1).height_msl_m, height_m) << height;
+  const std::string points = "time;lat;lon;alt_m\n0.000;44.300;-71.6;950.5\n30.000;44.310;-71.6;950.123\n";
+  EXPECT_EQ(readAs("s.csv", points).objects.at(0).poses.at(1).height_msl_m, 950.123);
+}
+
+TEST(TrackTable, DaysOfSpreadsheetsAreRecognisedInTwoRows) {
+  const Recording r =
+      readAs("s.csv", "time,lat,lon,alt\n46174.25,44.3,-71.6,900\n46174.250694444,44.32,-71.6,900\n");
+  EXPECT_THAT(r.tally.notes, testing::Contains(HasSubstr("times are taken as days since 1900")));
+  const auto& poses = r.objects.at(0).poses;
+  EXPECT_NEAR(poses.at(1).t_s - poses.at(0).t_s, 60, 1e-3);
+  EXPECT_NO_THROW(readAs("s.csv", "time,lat,lon,alt\n10,44.3,-71.6,900\n10.001,44.32,-71.6,900\n"));
+}
+
 TEST(TrackTable, PositionsAtTheTimeOfALaterOneAreCounted) {
   const Recording r = readAs(
       "s.csv", "time,lat,lon,alt_m\n0,52,5,1\n0,52.0001,5,1\n0,52.0002,5,1\n9,52.001,5,1\n9,52.001,5,1\n");

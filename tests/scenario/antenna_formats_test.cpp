@@ -197,7 +197,8 @@ TEST(AntennaFiles, StateTheirFrequencies) {
   EXPECT_EQ(bandOf("a.adf", nsma("")).highest_hz, HUGE_VAL);
   const std::string cuts =
       "\nGAIN 12\nHORIZONTAL 4\n0 0\n90 10\n180 20\n270 10\nVERTICAL 4\n0 0\n90 15\n180 20\n270 16\n";
-  for (const char* const one : {"FREQUENCY 900", "FREQUENCY (MHz) 900", "frequency\t900 MHz"}) {
+  for (const char* const one :
+       {"FREQUENCY 900", "FREQUENCY (MHz) 900", "frequency\t900 MHz", "FREQUENCY 0.9GHz"}) {
     EXPECT_EQ(bandOf("a.msi", one + cuts).lowest_hz, 900e6) << one;
     EXPECT_EQ(bandOf("a.msi", one + cuts).highest_hz, 900e6) << one;
   }

@@ -130,6 +130,19 @@ TEST(MsiAntenna, CountsTheVerticalAngleDownwards) {
   EXPECT_NEAR(lossAt_db(antenna, 0, 6), 3 * 1.44, 1e-4);
 }
 
+TEST(MsiAntenna, TellsATiltThatTheCutDoesNotHoldInWhateverWordsItIsStated) {
+  for (const char* const line : {"TILT 6", "TILT MECHANICAL 6", "TILT ELECTRICAL 6", "TILT 6 ELECTRICAL",
+                                 "MECHANICAL_TILT 6", "ELECTRICAL_TILT 6"}) {
+    int warnings = 0;
+    setLogSink([&](LogLevel level, const std::string& message) {
+      warnings += level == LogLevel::warning && message.find("6 deg of tilt") != std::string::npos;
+    });
+    readText(sector(std::string("GAIN 15 dBi\n") + line + "\n", 0));
+    EXPECT_EQ(warnings, 1) << line;
+  }
+  setLogSink({});
+}
+
 TEST(MsiAntenna, DoesNotApplyATiltThatTheCutHoldsAlready) {
   int warnings = 0;
   setLogSink([&](LogLevel level, const std::string& message) {

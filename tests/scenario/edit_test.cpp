@@ -184,6 +184,14 @@ TEST_F(EditScenario, InvalidEditIsNamedAndChangesNothing) {
   Scenario scenario = load(kSmall);
   EXPECT_EQ(faultOf(scenario, "emitters.search radar.power_w", "abc"),
             "emitters.search radar.power_w=abc: 'power_w' must be a number (W), not 'abc'");
+  EXPECT_EQ(faultOf(scenario, "emitters.search radar.power_w", "5kW"),
+            "emitters.search radar.power_w=5kW: 'power_w' must be a number (W), not '5kW'; write 5000");
+  EXPECT_EQ(
+      faultOf(scenario, "emitters.search radar.frequency_hz", "3 GHz"),
+      "emitters.search radar.frequency_hz=3 GHz: 'frequency_hz' must be a number (Hz), not '3 GHz'; write "
+      "3000000000");
+  EXPECT_THAT(faultOf(scenario, "region.origin.longitude_deg", "288.6967"),
+              testing::EndsWith("outside the allowed range -180 to 180 deg; write -71.3033"));
   EXPECT_EQ(faultOf(scenario, "atmosphere.k_factor", "99"),
             "atmosphere.k_factor=99: 'k_factor' is 99, outside the allowed range 0.5 to 10");
   EXPECT_EQ(faultOf(scenario, "emitters.serch radar.power_w", "5"),

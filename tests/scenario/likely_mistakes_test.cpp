@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/units.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "scenario/file/far_outside.h"
 #include "tests/scenario/scenario_files.h"
@@ -19,6 +21,20 @@ using test::messagesOf;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+
+TEST(LikelyMistakes, EmittersOutsideTheRegionAreToldFromTheFirstMetresOnWithTheDistance) {
+  const Region& region = loadScenario(test::shippedScenario("quick.yaml"))->region;
+  const auto eastBy = [&](double outside_m) {
+    const GeodeticPosition at = geodesicDirect(region.origin.latitude_deg, region.origin.longitude_deg,
+                                               kPi / 2, region.size_m.x / 2 + outside_m);
+    return messagesOf("quick.yaml",
+                      {{"platforms.mast.position.latitude_deg", fmt::format("{}", at.latitude_deg)},
+                       {"platforms.mast.position.longitude_deg", fmt::format("{}", at.longitude_deg)}});
+  };
+  EXPECT_THAT(eastBy(700), HasSubstr("emitter 'transmitter' is outside the region, 700 m from it"));
+  EXPECT_THAT(eastBy(2500), HasSubstr("is outside the region, 2.5 km from it"));
+  EXPECT_THAT(eastBy(-100), Not(HasSubstr("outside the region")));
+}
 
 TEST(LikelyMistakes, PositionsThousandsOfKilometresAwayAreToldWithTheExchangeThatBringsThemNear) {
   const auto at = [](const std::string& latitude, const std::string& longitude) {

@@ -47,6 +47,11 @@ TEST(Places, FaultsNameTheFile) {
   EXPECT_THAT(faultOf(folder.write("text.geojson", "no places")), HasSubstr("text.geojson"));
   EXPECT_THAT(faultOf(folder.write("far.geojson", R"({"type": "Point", "coordinates": [1000, 51]})")),
               HasSubstr("outside the allowed range"));
+  for (const char* const content :
+       {"a,b\n1,2\n", "Breite;Laenge\n44,3;-71,6\n", "latitude_deg,longitude_deg\n"})
+    EXPECT_THAT(faultOf(folder.write("table.csv", content)), HasSubstr("has no place: ")) << content;
+  EXPECT_THAT(faultOf(folder.write("none.geojson", R"({"type": "FeatureCollection", "features": []})")),
+              HasSubstr("none.geojson: has no place: features need points, lines or areas"));
   EXPECT_THAT(faultOf("/vsicurl/http://127.0.0.1:1/places.geojson"), HasSubstr("no such file"));
 }
 

@@ -330,6 +330,30 @@ TEST_F(Soundings, WhoseColumnsContradictEachOtherAreRefused) {
   EXPECT_THAT(soundingError(text), HasSubstr("are the heights in feet?"));
 }
 
+TEST(ProfilesOfWeather, WithHeightsInFeetAreRefused) {
+  const test::TemporaryFolder folder;
+  const auto profileOf = [&](double unit, const std::string& top) {
+    std::string text = "height_msl_m,pressure_hpa,temperature_k,relative_humidity_percent\n";
+    for (const auto& [height_m, rest] : {std::pair(10.0, "1010,299.65,86.2"),
+                                         {232.0, "985,299.95,55"},
+                                         {780.0, "925,295.65,58.6"},
+                                         {1510.0, "850,290.75,61"}})
+      text += fmt::format("{:.0f},{}\n", height_m * unit, rest);
+    return folder.write("profile.csv", text + top);
+  };
+  const auto errorOfProfile = [&](const std::string& file) {
+    return test::errorOf([&] { readRefractivity(file); }, ErrorCode::bad_input);
+  };
+  EXPECT_NO_THROW(readRefractivity(profileOf(1, "")));
+  EXPECT_THAT(
+      errorOfProfile(profileOf(1 / 0.3048, "")),
+      testing::AllOf(HasSubstr("profile.csv:2"), HasSubstr("the heights rise by 4921 m from 1010 to 850 hPa"),
+                     HasSubstr("are the heights in feet?")));
+  EXPECT_THAT(errorOfProfile(profileOf(1 / 0.3048, "18800,500,265,20\n")),
+              HasSubstr("are the heights in feet?"))
+      << "M is out of its range";
+}
+
 TEST_F(Soundings, AreReadFromCsvOfWyoming) {
   const std::string csv =
       "time,longitude,latitude,pressure_hPa,geopotential height_m,temperature_C,dew point "

@@ -27,7 +27,11 @@ class FlatTerrain : public Terrain {
   long long voidPosts() const override { return 0; }
   double uncoveredFraction() const override { return 0; }
   GeoBox box() const override { return {}; }
-  GeoBox coverage() const override { return {}; }
+  GeoBox coverage() const override {
+    GeoBox box;
+    box.south_deg = 30, box.north_deg = 40, box.west_deg = -90, box.east_deg = -70;
+    return box;
+  }
   double lowest_m() const override { return height_m_; }
   double highest_m() const override { return height_m_; }
 
@@ -119,7 +123,8 @@ TEST(Snapshot, HeightAboveMissingGroundIsAnError) {
   Scenario scenario = oneEmitter(atAgl(10));
   scenario.terrain.emplace();
   const FlatTerrain terrain(250, -80);
-  expectMessage(scenario, &terrain, 3, "the terrain is missing there");
+  expectMessage(scenario, &terrain, 3,
+                "the terrain is missing there: void posts, or a gap between the files; ");
   expectMessage(scenario, nullptr, 3, "the terrain was not loaded");
   Scenario aloft = oneEmitter(atMsl(10));
   aloft.terrain.emplace();
