@@ -124,6 +124,16 @@ std::string warningsOf(const std::function<void()>& call) {
   return warnings;
 }
 
+TEST(CandidateSites, FieldsAndFeaturesOfVectorFilesThatAreNotUsedAreTold) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("a.geojson", R"({"type": "FeatureCollection", "features": [
+    {"type": "Feature", "properties": {"name": "hill", "Hoehe_m": 60}, "geometry": {"type": "Point", "coordinates": [5, 52]}},
+    {"type": "Feature", "properties": {"name": "lost", "Hoehe_m": null}, "geometry": null}]})");
+  const std::string warnings = warningsOf([&] { EXPECT_EQ(readCandidates(file).size(), 1u); });
+  EXPECT_THAT(warnings, HasSubstr("not used: column 'Hoehe_m'; each site has the height of its platform"));
+  EXPECT_THAT(warnings, HasSubstr("1 of 2 features have no point and are left out"));
+}
+
 TEST(CandidateSites, ColumnsOfATableThatAreNotUsedAreNamedInAWarning) {
   const test::TemporaryFolder folder;
   const std::string warnings =

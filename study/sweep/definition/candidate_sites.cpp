@@ -41,9 +41,23 @@ std::vector<int> heightFieldsOf(OGRFeatureDefnH layer) {
   return fields;
 }
 
-/// @param has_third  becomes true if a point has a third coordinate that is not used
+/// True for a field whose name is that of a height in some language. Vector files have many other fields.
+bool mayBeHeight(const char* name) {
+  const std::string upper = document::upperCase(name);
+  const auto has = [&](const char* word) { return upper.find(word) != std::string::npos; };
+  return upper != "ALTITUDEMODE" && (has("HEIGHT") || has("HOEHE") || has("H\xC3\xB6HE") || has("ALT") ||
+                                     has("ELEV") || has("HAUTEUR") || has("MAST"));
+}
+
+/// What of a file is not used.
+struct Unused {
+  std::vector<std::string> columns;
+  bool has_third = false;  ///< a point has a third coordinate
+  int no_points = 0;       ///< features
+};
+
 void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::string& file,
-              std::vector<CandidateSite>& sites, bool& has_third) {
+              std::vector<CandidateSite>& sites, Unused& unused) {
   const gdal::SpatialReference wgs84 = scenario::wgs84Reference();
   gdal::Transformation transformation;
   if (OGR_L_GetSpatialRef(layer) != nullptr) {
@@ -55,12 +69,19 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
   const int name_field = OGR_FD_GetFieldIndex(definition, "name");
   const int ele_field = OGR_FD_GetFieldIndex(definition, "ele");
   const std::vector<int> height_fields = heightFieldsOf(definition);
+  const auto isUnusedHeight = [&](int field) {
+    return field != ele_field && std::count(height_fields.begin(), height_fields.end(), field) == 0 &&
+           mayBeHeight(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(definition, field)));
+  };
+  std::set<std::string> others;
+  int number = 0;
   points.eachFeature(layer, [&](OGRFeatureH feature) {
+    ++number;
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
     const OGRwkbGeometryType type =
         geometry == nullptr ? wkbNone : wkbFlatten(OGR_G_GetGeometryType(geometry));
     const auto fail = [&](const std::string& problem) {
-      throw Error(ErrorCode::bad_input, {file, 0, 0}, fmt::format("point {} {}", sites.size() + 1, problem));
+      throw Error(ErrorCode::bad_input, {file, 0, 0}, fmt::format("point {} {}", number, problem));
     };
     if (type == wkbMultiPoint) {
       if (OGR_G_GetGeometryCount(geometry) != 1)
@@ -68,6 +89,7 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
                          OGR_G_GetGeometryCount(geometry)));
       geometry = OGR_G_GetGeometryRef(geometry, 0);
     } else if (type != wkbPoint) {
+      unused.no_points += geometry == nullptr ? 1 : 0;
       return;
     }
     if (OGR_G_IsEmpty(geometry) != 0) fail("is empty: it has no coordinates");
@@ -99,22 +121,26 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
         if (!contradiction.empty()) fail("contradicts itself: " + contradiction);
       }
     }
-    has_third = has_third || OGR_G_GetZ(geometry, 0) != 0 ||
-                (ele_field >= 0 && OGR_F_IsFieldSetAndNotNull(feature, ele_field) != 0);
+    for (int field = 0; field < OGR_FD_GetFieldCount(definition); ++field) {
+      if (isUnusedHeight(field) && OGR_F_IsFieldSetAndNotNull(feature, field) != 0)
+        others.insert(OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(definition, field)));
+    }
+    unused.has_third = unused.has_third || OGR_G_GetZ(geometry, 0) != 0 ||
+                       (ele_field >= 0 && OGR_F_IsFieldSetAndNotNull(feature, ele_field) != 0);
     sites.push_back(std::move(site));
   });
+  unused.columns.insert(unused.columns.end(), others.begin(), others.end());
 }
 
 /// Says once which heights the sites have, and what of the file is not used.
-void tellHeights(const std::string& file, const std::vector<CandidateSite>& sites,
-                 const std::vector<std::string>& unused, bool has_third) {
+void tellHeights(const std::string& file, const std::vector<CandidateSite>& sites, const Unused& unused) {
   const auto with_height =
       std::find_if(sites.begin(), sites.end(), [](const CandidateSite& site) { return site.height; });
   std::string text;
-  if (!unused.empty())
-    text = fmt::format("not used: {} '{}'", unused.size() == 1 ? "column" : "columns",
-                       fmt::join(unused, "', '"));
-  if (has_third) text = "not used: the heights of the points";
+  if (!unused.columns.empty())
+    text = fmt::format("not used: {} '{}'", unused.columns.size() == 1 ? "column" : "columns",
+                       fmt::join(unused.columns, "', '"));
+  if (unused.has_third) text = "not used: the heights of the points";
   if (with_height != sites.end()) {
     logInfo(fmt::format("{}: sites have the heights of its {}", file, with_height->height->key()));
   } else if (!text.empty()) {
@@ -123,15 +149,17 @@ void tellHeights(const std::string& file, const std::vector<CandidateSite>& site
         "height_msl_m gives each its own)";
   }
   if (!text.empty()) logWarning(fmt::format("{}: {}", file, text));
+  if (unused.no_points > 0)
+    logWarning(fmt::format("{}: {} of {} features have no point and are left out", file, unused.no_points,
+                           static_cast<std::size_t>(unused.no_points) + sites.size()));
 }
 
 }  // namespace
 
 std::vector<CandidateSite> readCandidates(const std::string& file) {
   std::vector<CandidateSite> sites;
-  std::vector<std::string> others;
-  bool has_third = false;
-  if (const auto table = scenario::readPointTable(file, &others)) {
+  Unused unused;
+  if (const auto table = scenario::readPointTable(file, &unused.columns)) {
     for (const scenario::NamedPoint& point : *table) {
       sites.push_back({point.name.empty() ? numberedName(sites) : point.name, point.latitude_deg,
                        point.longitude_deg, point.height});
@@ -139,7 +167,7 @@ std::vector<CandidateSite> readCandidates(const std::string& file) {
   } else {
     const scenario::VectorFile points(file);
     const scenario::GdalMessages messages;
-    for (OGRLayerH layer : points.layers()) addLayer(points, layer, file, sites, has_third);
+    for (OGRLayerH layer : points.layers()) addLayer(points, layer, file, sites, unused);
   }
   if (sites.empty() || sites.size() > kMaxCandidates) {
     throw Error(
@@ -159,7 +187,7 @@ std::vector<CandidateSite> readCandidates(const std::string& file) {
       throw Error(ErrorCode::bad_input, {file, 0, 0}, fmt::format("two points are named '{}'", site.name));
     }
   }
-  tellHeights(file, sites, others, has_third);
+  tellHeights(file, sites, unused);
   return sites;
 }
 
