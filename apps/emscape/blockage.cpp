@@ -79,7 +79,7 @@ std::string blockageText(const Blockage& blockage, const BlockageAreas& areas) {
   };
   return fmt::format(
       "'{}' at {:.1f} m: beam of {:.3g} deg at {:.3g} deg elevation, to {:.4g} km\n"
-      "cut by 10 % or more: {}\ncut by half or more:  {}{}\nclutter: none (bare ground)\n",
+      "cut by 10 % or more: {}\ncut by half or more:  {}{}\nground cover: none (bare ground)\n",
       blockage.emitter, blockage.station_msl_m, blockage.beamwidth_deg, blockage.elevation_deg,
       blockage.range_m() / 1000, share(areas.cut_m2), share(areas.half_cut_m2),
       areas.unknown_m2 > 0 ? fmt::format("; {:.1f} km2 unknown", areas.unknown_m2 / 1e6) : "");
@@ -89,7 +89,7 @@ int blockage(BlockageCommand command, const GlobalOptions& global) {
   endAtInterrupts();
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
-  report::checkOutputs(report::outputsOf("--output", command.outputs), {}, {scenario});
+  report::checkOutputs(report::outputsOf("--output", command.outputs), {}, {scenario}, true);
   if (!command.force) requireNew({command.outputs.begin(), command.outputs.end()});
   BlockageRequest& request = command.request;
   request.emitter =

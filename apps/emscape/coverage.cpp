@@ -12,6 +12,7 @@
 #include "apps/emscape/subcommands.h"
 #include "base/text/quantity_text.h"
 #include "emfield/excess/clutter_text.h"
+#include "emfield/radar/receiver.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "report/maps/output_files.h"
@@ -74,7 +75,9 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
     print("Coverage of {}: {} x {} pixels of {} m in {}, {}{}\n", scenario->name, grid->width, grid->height,
           grid->cell_m, grid->crs, quantity.name,
           quantity.categorical ? "" : " >= " + quantityText(request.threshold, quantity.unit));
-    print("clutter: {}\n", emfield::clutterText(*scenario));
+    print("ground cover: {}\n", emfield::clutterText(*scenario));
+    if (const std::string target = emfield::targetText(*scenario); !target.empty())
+      print("target: {}\n", target);
   }
   const auto take = [&](const study::CoverageMap& map) {
     stopIfInterrupted();

@@ -1,5 +1,7 @@
 #include "emfield/radar/receiver.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -156,6 +158,25 @@ RadarLook lookOf(const Emitter& radar, scenario::RadarAim look) {
     result.cos_highest = static_cast<float>(std::cos(highest_rad));
   }
   return result;
+}
+
+std::string targetText(const scenario::Scenario& scenario) {
+  double min_m2 = HUGE_VAL, max_m2 = 0;
+  for (const scenario::Emitter& emitter : scenario.emitters) {
+    if (!emitter.enabled || emitter.kind != scenario::EmitterKind::radar) continue;
+    min_m2 = std::min(min_m2, emitter.receiver.target_rcs_m2);
+    max_m2 = std::max(max_m2, emitter.receiver.target_rcs_m2);
+  }
+  const auto isOther = [&](const scenario::Target& target) {
+    return target.table != nullptr || target.rcs_m2 != min_m2 || target.rcs_m2 != max_m2;
+  };
+  const auto other = std::find_if(scenario.targets.begin(), scenario.targets.end(), isOther);
+  if (max_m2 == 0 || other == scenario.targets.end()) return "";
+  const std::string rcs_m2 =
+      min_m2 == max_m2 ? fmt::format("{:g}", max_m2) : fmt::format("{:g} to {:g}", min_m2, max_m2);
+  return fmt::format(
+      "{} m2 ('target_rcs_m2' of each radar); '{}' of 'targets' has another, for link and exposure", rcs_m2,
+      other->name);
 }
 
 }  // namespace emscape::emfield

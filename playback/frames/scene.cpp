@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/text/quantity_text.h"
@@ -52,6 +53,14 @@ render::Affiliation affiliationOf(const std::optional<scenario::Side>& side) {
 std::shared_ptr<const render::HeightField> heightFieldOf(const LoadedScenario& scene,
                                                          const volume::Grid& grid) {
   return groundOf(scene, grid, nullptr, false).field;
+}
+
+bool isDrawnWithoutEmitters(const scenario::Scenario& scenario, std::size_t platform) {
+  const scenario::Platform& drawn = scenario.platforms[platform];
+  return drawn.side || drawn.moves() ||
+         std::any_of(scenario.targets.begin(), scenario.targets.end(), [&](const scenario::Target& target) {
+           return target.platform == static_cast<int>(platform);
+         });
 }
 
 std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::TerrainPtr& terrain,

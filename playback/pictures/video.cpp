@@ -34,7 +34,8 @@ VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double 
       fmt::format("{}", frames_per_s), "-i", "pipe:0", "-an",
       // 4:2:0 needs even sizes
       "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-preset", "medium", "-crf", "18",
-      "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", "file:" + file_.temporary().string()};
+      "-pix_fmt", "yuv420p", "-metadata", "comment=Emscape", "-movflags", "+faststart", "-f", "mp4",
+      "file:" + file_.temporary().string()};
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);

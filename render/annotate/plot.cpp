@@ -214,7 +214,7 @@ void drawPlot(ImageSize size, const std::string& file, const std::function<void(
   draw(canvas);
   if (isSvg(file)) {
     const std::string text = canvas.svg();
-    writeWhole(file, [&](std::ostream& out) { out << text; });
+    writeWhole(file, [&](std::ostream& out) { out << text << "<!-- Emscape -->\n"; });
   } else {
     writePng(file, canvas.pixels());
   }

@@ -58,6 +58,11 @@ class PngEncoder {
                    8, has_alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                    PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
       png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+      png_text software{};  // tells our files from others; see report/maps/output_files.h
+      software.compression = PNG_TEXT_COMPRESSION_NONE;
+      software.key = const_cast<char*>("Software");
+      software.text = const_cast<char*>("Emscape");
+      png_set_text(png_, info_, &software, 1);
       png_write_info(png_, info_);
       png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_NO_FILTERS);
       constexpr int kFast = 3;

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
@@ -50,6 +51,38 @@ std::string whatIs(const std::string& file, const scenario::Scenario& scenario) 
   throw Error(ErrorCode::usage, fmt::format("{}: {} is {}", output.name, output.file, what));
 }
 
+/// The beginning and the end of a file, where formats have the name of the program.
+std::string endsOf(const fs::path& file) {
+  constexpr std::streamoff kBegin = 1 << 20, kEnd = 4096;
+  std::ifstream in(file, std::ios::binary);
+  std::string text(static_cast<std::size_t>(kBegin + kEnd), '\0');
+  in.read(text.data(), kBegin);
+  std::streamoff count = in.gcount();
+  if (count == kBegin) {
+    in.seekg(-kEnd, std::ios::end);
+    in.read(text.data() + count, kEnd);
+    count += in.gcount();
+  }
+  text.resize(static_cast<std::size_t>(count));
+  return text;
+}
+
+/// True for a file of this program, and for an empty one.
+bool isOwn(const fs::path& file) {
+  const std::string text = endsOf(file), line = text.substr(0, text.find_first_of("\r\n"));
+  if (file.extension() == ".csv") {  // headers of link, exposure and vertical
+    const auto begins = [&](const char* header) { return line.rfind(header, 0) == 0; };
+    return text.empty() || begins("kind,time_s,emitter,to,") || begins("kind,azimuth_deg,line,range_m,") ||
+           begins("time_s,latitude_deg,longitude_deg,height_msl_m,height_agl_m,");
+  }
+  if (file.extension() == ".json") {
+    const nlohmann::json json = nlohmann::json::parse(readWholeText(file), nullptr, false);
+    return text.empty() || (json.is_object() && (json.contains("emscape") || json.contains("scenario") ||
+                                                 json.contains("input")));
+  }
+  return text.empty() || text.find("mscape") != std::string::npos;
+}
+
 /// True for a report that this program wrote.
 bool isOwnReport(const fs::path& file) {
   const std::string text = readWholeText(file);
@@ -67,7 +100,8 @@ std::vector<NamedFile> outputsOf(const std::string& option, const std::vector<st
 }
 
 void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
-                  const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios) {
+                  const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
+                  bool replaces_any) {
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const NamedFile& output = outputs[i];
     if (output.file.empty()) continue;
@@ -84,6 +118,8 @@ void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<Named
         if (!file.empty() && isSame(output.file, file)) refuse(output, whatIs(file, *scenario));
       }
     }
+    if (!replaces_any && !isOwn(output.file))
+      refuse(output, "a file that emscape did not write; give another name, or move it away first");
   }
 }
 

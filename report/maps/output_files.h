@@ -20,11 +20,14 @@ struct NamedFile {
 std::vector<NamedFile> outputsOf(const std::string& option, const std::vector<std::string>& files);
 
 /// Checks that outputs are different, and none of the inputs. Files are the same if they have the same
-/// identity, or the same name if they do not exist.
-/// @param scenarios  inputs, with the files that they name
+/// identity, or the same name if they do not exist. Files that this program did not write are not replaced:
+/// its pictures, films and volumes have its name, its tables and JSON files their keys.
+/// @param scenarios     inputs, with the files that they name
+/// @param replaces_any  true: files that exist are the caller's business
 /// @throws Error (usage) that names the option and the file
 void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
-                  const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios);
+                  const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
+                  bool replaces_any = false);
 
 /// Checks reports in a folder. @param option  name of the folder, for the message
 /// @throws Error (usage) if one exists that none of `coverage`, `compare` and `study` wrote

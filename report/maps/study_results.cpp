@@ -148,6 +148,7 @@ Json toJson(const StudyReport& report) {
                             {"unit", summary.unit},
                             {"max", number(summary.max)},
                             {"max_variant", summary.max_variant},
+                            {"variants_with_max", summary.with_max},
                             {"min", number(summary.min)},
                             {"min_variant", summary.min_variant},
                             {"mean", number(summary.mean)},
@@ -160,7 +161,9 @@ Json toJson(const StudyReport& report) {
     Json chosen = Json::array(), places = Json::array();
     for (const study::ChosenSite& site : report.summary.sites) {
       chosen.push_back(site.name);
-      places.push_back({{"latitude_deg", site.latitude_deg}, {"longitude_deg", site.longitude_deg}});
+      places.push_back({{"latitude_deg", site.latitude_deg},
+                        {"longitude_deg", site.longitude_deg},
+                        {"at_sea_level", site.is_at_sea_level}});
     }
     json["sites"] = {{"chosen", chosen}, {"places", places}, {"value", report.summary.sites_value}};
   }
@@ -176,15 +179,22 @@ std::string studyText(const StudyReport& report) {
       continue;
     }
     const std::string unit = summary.unit.empty() ? "" : " " + summary.unit;
-    out.add("{:<24} {} to {}{}; the largest: {}\n", summary.name,
+    if (summary.min == summary.max && summary.with_max > 1) {
+      out.add("{:<24} {}{} in each of {} variants\n", summary.name,
+              study::figureText(summary.max, summary.unit), unit, summary.with_max);
+      continue;
+    }
+    out.add("{:<24} {} to {}{}; the largest: {}{}\n", summary.name,
             study::figureText(summary.min, summary.unit), study::figureText(summary.max, summary.unit), unit,
-            study::describeVariant(spec, summary.max_variant));
+            study::describeVariant(spec, summary.max_variant),
+            summary.with_max > 1 ? fmt::format(", and the same in {} more", summary.with_max - 1) : "");
   }
   if (!report.summary.sites.empty()) {
     std::string names;
     for (const study::ChosenSite& site : report.summary.sites)
-      names += fmt::format("{}{} ({:.5f}, {:.5f})", names.empty() ? "" : ", ", site.name, site.latitude_deg,
-                           site.longitude_deg);
+      names += fmt::format("{}{} ({:.5f}, {:.5f}{})", names.empty() ? "" : ", ", site.name, site.latitude_deg,
+                           site.longitude_deg,
+                           site.is_at_sea_level ? "; the ground there is at sea level: water?" : "");
     const std::string unit = unitOf(spec.measures[spec.sites->measure]);
     out.add("sites: {}: {} {}\n", names, study::figureText(report.summary.sites_value, unit), unit);
   }

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "emscape/base/error.h"
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/log.h"
+#include "scenario/file/far_outside.h"
 #include "scenario/map/places.h"
 #include "study/picture/map_plane.h"
 
@@ -51,11 +55,43 @@ playback::MarkedPlane markedPlane(const MapGrid& grid) {
   return marked;
 }
 
+namespace {
+
+/// Told of a file without a place in the region; empty: it has one.
+std::string placesOutsideText(const std::string& file, const std::vector<scenario::Place>& places,
+                              const scenario::Region& region) {
+  const GeoFrame frame(region.origin);
+  const Vec3d half = region.size_m * 0.5;
+  std::string mistake;
+  for (const scenario::Place& place : places) {
+    Vec3d lowest{HUGE_VAL, HUGE_VAL, 0}, highest{-HUGE_VAL, -HUGE_VAL, 0};
+    for (const std::vector<GeodeticPosition>& part : place.parts) {
+      for (const GeodeticPosition& position : part) {
+        const Vec3d at = frame.toLocal({position.latitude_deg, position.longitude_deg, 0});
+        lowest = {std::min(lowest.x, at.x), std::min(lowest.y, at.y), 0};
+        highest = {std::max(highest.x, at.x), std::max(highest.y, at.y), 0};
+        if (mistake.empty())
+          mistake = scenario::mistakenPlaceText(region, position.latitude_deg, position.longitude_deg);
+      }
+    }
+    if (lowest.x <= half.x && highest.x >= -half.x && lowest.y <= half.y && highest.y >= -half.y) return "";
+  }
+  return fmt::format("{}: none of its places is in the region, so that none is drawn{}", file,
+                     mistake.empty() ? "" : "; " + mistake);
+}
+
+}  // namespace
+
 MapMarks::MapMarks(const MapStudy& study) : study_(study) {
   checkRings(study);
   if (study.view.places.empty()) return;
   playback::GroundMarks marks(markedPlane(*study.grid));
-  for (const std::string& file : study.view.places) marks.addPlaces(scenario::readPlaces(file));
+  for (const std::string& file : study.view.places) {
+    const std::vector<scenario::Place> places = scenario::readPlaces(file);
+    const std::string outside = placesOutsideText(file, places, study.scenarios.front()->region);
+    if (!outside.empty()) logWarning(outside);
+    marks.addPlaces(places);
+  }
   place_lines_ = std::move(marks.lines);
   place_points_ = std::move(marks.points);
 }

@@ -348,7 +348,8 @@ std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot) {
     if (snapshot.emitters[e].active) add(platform, emitter.name, playback::markerKindOf(emitter.kind));
   }
   for (std::size_t p = 0; p < platforms.size(); ++p) {
-    if (!has_emitter[p] && platforms[p].side) add(p, platforms[p].name, render::MarkerKind::platform);
+    if (!has_emitter[p] && playback::isDrawnWithoutEmitters(*snapshot.scenario, p))
+      add(p, platforms[p].name, render::MarkerKind::platform);
   }
   return markers;
 }

@@ -12,6 +12,7 @@
 #include "base/files/whole_file.h"
 #include "base/text/quantity_text.h"
 #include "emfield/excess/clutter_text.h"
+#include "emfield/radar/receiver.h"
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -243,7 +244,9 @@ struct MapFolder::State {
     if (study.scenarios.size() == 1) {
       for (const std::string& sentence : coverageSummary(study, records)) report.summary(sentence);
     }
-    report.summary("clutter: " + emfield::clutterText(*study.scenarios.front()));
+    report.summary("ground cover: " + emfield::clutterText(*study.scenarios.front()));
+    if (const std::string target = emfield::targetText(*study.scenarios.front()); !target.empty())
+      report.summary("target: " + target);
     report.warnings(warnings);
     if (study.scenarios.size() == 1) {
       report.section("Areas and ranges");

@@ -17,6 +17,7 @@ namespace emscape::test {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
@@ -96,6 +97,36 @@ TEST_F(Outputs, AreDifferentFiles) {
                 "--plot: " + (folder_ / "data/../x.png") + " is also the output of --csv");
   expectRefused({"render", quick_, "-o", picture, "--save-state", picture},
                 "--save-state: " + picture + " is also the output of --output");
+}
+
+TEST_F(Outputs, SLOW_ReplaceFilesOfEmscapeAndNoOthers) {
+  const Arguments commands[] = {
+      {"link", links_, "--csv", folder_ / "x.csv", "--plot", folder_ / "x.svg"},
+      {"exposure", links_, "--platform", "drone", "-o", folder_ / "x.csv", "-o", folder_ / "x.png"},
+      {"vertical", links_, "--emitter", "search radar", "--azimuth", "30", "-o", folder_ / "x.csv", "-o",
+       folder_ / "x.json"},
+      {"profile", links_, "--emitter", "search radar", "--to", "36.3,-84.2,1500", "--plot",
+       folder_ / "x.svg"},
+      {"terrain", folder_ / "data/jacksboro.tif", "-o", folder_ / "x.png"},
+      {"render", quick_, "--size", "64x64", "-o", folder_ / "x.png"}};
+  const auto kinds = {"x.csv", "x.png", "x.svg", "x.json"};
+  for (const Arguments& command : commands) {
+    for (const char* const kind : kinds) fs::remove(folder_ / kind);
+    ASSERT_EQ(run(command).status, 0) << command[0];
+    EXPECT_EQ(run(command).status, 0) << command[0] << " replaces its own";
+    for (const char* const kind : kinds) {
+      if (!fs::exists(folder_ / kind)) continue;
+      const std::string own = readFile(folder_ / kind);
+      writeFile(folder_ / kind, "name,latitude_deg,longitude_deg\nsite 1,36.5,-84.2\n");
+      EXPECT_THAT(errorOfRun(command, kUsage),
+                  AllOf(HasSubstr(folder_ / kind),
+                        HasSubstr("is a file that emscape did not write; give another name, or move it")));
+      EXPECT_EQ(readFile(folder_ / kind), "name,latitude_deg,longitude_deg\nsite 1,36.5,-84.2\n");
+      writeFile(folder_ / kind, own);
+    }
+  }
+  writeFile(folder_ / "x.png", "");
+  EXPECT_EQ(run(commands[4]).status, 0) << "an empty file, as of mktemp";
 }
 
 TEST_F(Outputs, OfCoverageDoNotReplaceAUsersFile) {

@@ -19,6 +19,7 @@ namespace {
 using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 const char* const kResults[] = {"results.csv", "results.nc", "report.html"};
 
@@ -322,6 +323,24 @@ TEST(Study, RefusesInvalidOptions) {
   EXPECT_THAT(errorOf({"-o", out, "--keep", "pictures"}, 2), HasSubstr("volumes"));
   EXPECT_THAT(errorOf({"-o", out, "--set", "emitters.nobody.power_w=1"}, 3), HasSubstr("nobody"));
   EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST(Study, SaysThatVariantsAreEqualInsteadOfNamingTheFirstAsTheLargest) {
+  const TemporaryFolder folder;
+  const auto textOf = [&](const std::string& sweep) {
+    const std::string file =
+        folder.write("s.yaml", "schema_version: 1\nscenario: " + shippedScenario("jamming.yaml") +
+                                   "\ntimes: 40\ncell_m: 4000\nsweep: " + sweep +
+                                   "\nmeasures: [{name: covered, height: \"agl:300\"}]\n");
+    return run({"study", file, "-o", folder / ("out" + std::to_string(sweep.size()))}).out;
+  };
+  EXPECT_THAT(textOf("{output.floor: {values: [-120, -121, -122]}}"),
+              AllOf(HasSubstr(" km2 in each of 3 variants\n"), Not(HasSubstr("the largest"))));
+  EXPECT_THAT(
+      textOf(
+          "{emitters.stand-off jammer.power_w: {values: [1, 1000]}, output.floor: {values: [-120, -121]}}"),
+      HasSubstr(
+          "; the largest: emitters.stand-off jammer.power_w=1, output.floor=-120, and the same in 1 more\n"));
 }
 
 TEST(Study, DoesNotReplaceFilesOfTheStudy) {

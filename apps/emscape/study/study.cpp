@@ -106,7 +106,7 @@ void checkStudyOutputs(const StudyCommand& command, const study::StudySpec& spec
   }
   std::vector<report::NamedFile> inputs{{"the study", command.study}};
   for (const std::string& file : spec.files) inputs.push_back({"a file that the study names", file});
-  report::checkOutputs(outputs, inputs, {spec.base});
+  report::checkOutputs(outputs, inputs, {spec.base}, true);
   report::checkReports(command.folder, {"report.html"}, "--output");
 }
 

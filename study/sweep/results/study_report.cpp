@@ -14,6 +14,7 @@
 #include "base/text/quantity_text.h"
 #include "document/schema_check.h"
 #include "emfield/excess/clutter_text.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/study/maps/map.h"
 #include "emscape/study/maps/map_grid.h"
 #include "study/report/html_report.h"
@@ -143,17 +144,30 @@ class ReportWriter {
         {},
         ""};
     std::vector<std::size_t> so_far;
+    const scenario::TerrainPtr terrain = scenario::loadTerrain(*study_.base);
+    std::string at_sea;
     for (const std::size_t site : chosen) {
       so_far.push_back(site);
       const std::size_t v = computed_[site];
       const VariantFactor& factor = study_.variants.factors().front();
-      summary_.sites.push_back({factor.names[v], degrees(v, 0), degrees(v, 1)});
+      summary_.sites.push_back(
+          {factor.names[v], degrees(v, 0), degrees(v, 1), isAtSeaLevel(terrain.get(), v)});
+      if (summary_.sites.back().is_at_sea_level) at_sea += (at_sea.empty() ? "" : ", ") + factor.names[v];
       table.rows.push_back({factor.names[v], factor.value(v, 0), factor.value(v, 1), text(v, m),
                             figureText(together(so_far), unitOf(measure))});
     }
     if (!chosen.empty()) summary_.sites_value = together(chosen);
     report_.table(table);
+    if (!at_sea.empty())
+      report_.paragraph("The ground is at sea level, which may be water, at: " + at_sea +
+                        ". Candidates on land are named in a table ('candidates').");
     writeCandidates(file, m, chosen);
+  }
+
+  bool isAtSeaLevel(const scenario::Terrain* terrain, std::size_t v) const {
+    constexpr double kSea_m = 0.5;
+    return terrain != nullptr &&
+           std::abs(static_cast<double>(terrain->heightMsl_m(degrees(v, 0), degrees(v, 1)))) <= kSea_m;
   }
 
   /// A coordinate of a candidate.
@@ -211,6 +225,8 @@ class ReportWriter {
     summary.mean = sum / static_cast<double>(ranked.size());
     summary.max_variant = ranked.front();
     summary.max = value(ranked.front(), m);
+    summary.with_max = static_cast<std::size_t>(std::count_if(
+        ranked.begin(), ranked.end(), [&](std::size_t v) { return value(v, m) == summary.max; }));
     summary.min_variant = ranked.back();
     summary.min = value(ranked.back(), m);
     std::vector<double> ascending;

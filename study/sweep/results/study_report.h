@@ -14,7 +14,8 @@ namespace emscape::study {
 struct MeasureSummary {
   std::string name, unit;
   double min = 0, max = 0, mean = 0;
-  std::size_t min_variant = 0, max_variant = 0;
+  std::size_t min_variant = 0, max_variant = 0;  ///< the first ones
+  std::size_t with_max = 0;                      ///< variants that have the maximum
   /// Standard deviation, and the values below which 5, 50 and 95 % of the variants are.
   double deviation = NAN, percentile_5 = NAN, median = NAN, percentile_95 = NAN;
 };
@@ -22,6 +23,7 @@ struct MeasureSummary {
 struct ChosenSite {
   std::string name;
   double latitude_deg = 0, longitude_deg = 0;
+  bool is_at_sea_level = false;  ///< the ground there, which may be water
 };
 
 struct StudySummary {

@@ -40,4 +40,7 @@ std::vector<render::Track> tracksOf(const LoadedScenario& scene, const volume::G
 std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info, const volume::ValueRange& range,
                                            const scenario::Scenario* scenario);
 
+/// Whether maps have a symbol of a platform without emitters: it has a side, moves, or is a target.
+bool isDrawnWithoutEmitters(const scenario::Scenario& scenario, std::size_t platform);
+
 }  // namespace emscape::playback
