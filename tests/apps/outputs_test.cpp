@@ -101,14 +101,10 @@ TEST_F(Outputs, AreDifferentFiles) {
 
 TEST_F(Outputs, SLOW_ReplaceFilesOfEmscapeAndNoOthers) {
   const Arguments commands[] = {
-      {"link", links_, "--csv", folder_ / "x.csv", "--plot", folder_ / "x.svg"},
-      {"exposure", links_, "--platform", "drone", "-o", folder_ / "x.csv", "-o", folder_ / "x.png"},
-      {"vertical", links_, "--emitter", "search radar", "--azimuth", "30", "-o", folder_ / "x.csv", "-o",
-       folder_ / "x.json"},
-      {"profile", links_, "--emitter", "search radar", "--to", "36.3,-84.2,1500", "--plot",
-       folder_ / "x.svg"},
-      {"terrain", folder_ / "data/jacksboro.tif", "-o", folder_ / "x.png"},
-      {"render", quick_, "--size", "64x64", "-o", folder_ / "x.png"}};
+      {"link", links_, "--times", "0", "--csv", folder_ / "x.csv", "--plot", folder_ / "x.svg"},
+      {"vertical", links_, "--emitter", "search radar", "--azimuth", "30", "--grid", "20,20", "-o",
+       folder_ / "x.csv", "-o", folder_ / "x.json"},
+      {"terrain", folder_ / "data/jacksboro.tif", "-o", folder_ / "x.png"}};
   const auto kinds = {"x.csv", "x.png", "x.svg", "x.json"};
   for (const Arguments& command : commands) {
     for (const char* const kind : kinds) fs::remove(folder_ / kind);
@@ -126,7 +122,7 @@ TEST_F(Outputs, SLOW_ReplaceFilesOfEmscapeAndNoOthers) {
     }
   }
   writeFile(folder_ / "x.png", "");
-  EXPECT_EQ(run(commands[4]).status, 0) << "an empty file, as of mktemp";
+  EXPECT_EQ(run(commands[2]).status, 0) << "an empty file, as of mktemp";
 }
 
 TEST_F(Outputs, OfCoverageDoNotReplaceAUsersFile) {
