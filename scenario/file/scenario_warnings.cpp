@@ -260,7 +260,7 @@ void warnOfSpeeds(const Scenario& scenario, const Section& root, ParseContext& c
   warning.addTo(context.problems);
 }
 
-/// Warns about emitters that are never in the region, as at a mistyped position.
+/// Warns about emitters that are never in or beside the region, as at a mistyped position.
 void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseContext& context) {
   const GeoFrame frame(scenario.region.origin);
   const Vec3d half = scenario.region.size_m * 0.5;
@@ -275,8 +275,10 @@ void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseC
     double nearest_m = HUGE_VAL;
     for (const TrackPoint& point : scenario.platforms[emitter.platform].track)
       nearest_m = std::min(nearest_m, distance_m(point));
-    constexpr double kBeside_m = 1;  // rounding of positions
-    if (!(nearest_m > kBeside_m) || nearest_m > kFarOutside_m) continue;
+    constexpr double kBeside = 0.01;  // of the region's longer side: at its edge, as in vertical slices
+    if (!(nearest_m > kBeside * std::max(scenario.region.size_m.x, scenario.region.size_m.y)) ||
+        nearest_m > kFarOutside_m)
+      continue;
     warning.add(
         sections[i].locationOf("platform"), emitter.name,
         fmt::format(

@@ -22,7 +22,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(LikelyMistakes, EmittersOutsideTheRegionAreToldFromTheFirstMetresOnWithTheDistance) {
+TEST(LikelyMistakes, EmittersOutsideTheRegionAreToldWithTheDistance) {
   const Region& region = loadScenario(test::shippedScenario("quick.yaml"))->region;
   const auto eastBy = [&](double outside_m) {
     const GeodeticPosition at = geodesicDirect(region.origin.latitude_deg, region.origin.longitude_deg,
