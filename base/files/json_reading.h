@@ -10,14 +10,15 @@
 
 namespace emscape {
 
-/// Description of a fault: "type must be number, but is string", "key 'dims' not found".
+/// Description of a fault: "type must be number, but is string", "key 'dims' not found", "type
+/// cannot be array".
 inline std::string faultOf(const nlohmann::json::exception& error) {
   std::string text = error.what();  // "[json.exception.type_error.302] type must be ..."
   const std::size_t prefix = text.find("] ");
   if (text.front() == '[' && prefix != std::string::npos) text.erase(0, prefix + 2);
   const std::size_t found = text.rfind(" with ");  // "cannot use at() with string"
   if (text.rfind("cannot use ", 0) == 0 && found != std::string::npos)
-    return "type must be object or array, but is " + text.substr(found + 6);
+    return "type cannot be " + text.substr(found + 6);
   return text;
 }
 

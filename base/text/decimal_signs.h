@@ -1,4 +1,4 @@
-/// Points between thousands in tables whose numbers have decimal commas.
+/// Signs between thousands in tables whose numbers have the other sign before decimals.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,43 +12,58 @@
 
 namespace emscape {
 
-/// What separates decimals in the numbers of a table: in "950,5" and "1.050" a point is hardly decimal.
+/// What separates decimals in the numbers of a table: in "950,5" and "1.050" a point is hardly decimal, in
+/// "50.10" and "35,000" a comma hardly.
 class DecimalSigns {
  public:
   /// @param cell  of a column of numbers
   void see(std::string_view cell, const SourceLocation& location) {
     if (cell.empty() || cell.find_first_not_of("+-0123456789.,") != std::string_view::npos) return;
-    const bool has_comma = cell.find(',') != std::string_view::npos;
-    std::string& first = has_comma ? with_comma_ : with_point_;
-    if (!first.empty() || (!has_comma && !mayBeThousands(cell))) return;
-    first = cell;
-    if (!has_comma) location_ = location;
+    see(comma_, ',', cell, location);
+    see(point_, '.', cell, location);
   }
 
-  /// @throws Error (bad_input) at the first number whose point may be one between thousands, if others have
-  /// decimal commas
+  /// @throws Error (bad_input) at the first number whose sign may be one between thousands, if others have
+  /// the other sign before decimals
   void require() const {
-    if (with_comma_.empty() || with_point_.empty()) return;
-    throw Error(ErrorCode::bad_input, location_,
-                fmt::format("'{}': is its point decimal, or between thousands? Other numbers have decimal "
-                            "commas ('{}'); write it without a point, or with a comma",
-                            with_point_, with_comma_));
+    require(point_, "point", comma_, "comma");
+    require(comma_, "comma", point_, "point");
   }
 
  private:
-  /// One to three digits, not 0 first, then points with three digits each.
-  static bool mayBeThousands(std::string_view cell) {
+  struct Sign {
+    std::string decimal, unclear;  ///< the first number with one before decimals, and with one that may be
+    SourceLocation location;       ///< of the second
+  };
+
+  static void see(Sign& sign, char is, std::string_view cell, const SourceLocation& location) {
+    if (cell.find(is) == std::string_view::npos) return;
+    const bool is_unclear = mayBeThousands(cell, is);
+    std::string& first = is_unclear ? sign.unclear : sign.decimal;
+    if (!first.empty()) return;
+    first = cell;
+    if (is_unclear) sign.location = location;
+  }
+  static void require(const Sign& unclear, const char* sign, const Sign& other, const char* other_sign) {
+    const std::string& decimal = other.decimal.empty() ? other.unclear : other.decimal;
+    if (unclear.unclear.empty() || decimal.empty()) return;
+    throw Error(ErrorCode::bad_input, unclear.location,
+                fmt::format("'{}': is its {} decimal, or between thousands? Other numbers have decimal {}s "
+                            "('{}'); write it without a {}, or with a {}",
+                            unclear.unclear, sign, other_sign, decimal, sign, other_sign));
+  }
+  /// One to three digits, not 0 first, then signs with three digits each.
+  static bool mayBeThousands(std::string_view cell, char sign) {
     if (cell.front() == '+' || cell.front() == '-') cell.remove_prefix(1);
-    const std::size_t point = cell.find('.');
-    if (point == std::string_view::npos || point == 0 || point > 3 || cell.front() == '0') return false;
-    for (std::size_t i = point; i < cell.size(); ++i) {
-      if ((cell[i] == '.') != ((i - point) % 4 == 0)) return false;
+    const std::size_t first = cell.find(sign);
+    if (first == std::string_view::npos || first == 0 || first > 3 || cell.front() == '0') return false;
+    for (std::size_t i = first; i < cell.size(); ++i) {
+      if ((cell[i] == sign) != ((i - first) % 4 == 0)) return false;
     }
-    return (cell.size() - point) % 4 == 0;
+    return (cell.size() - first) % 4 == 0;
   }
 
-  std::string with_comma_, with_point_;
-  SourceLocation location_;
+  Sign comma_, point_;
 };
 
 }  // namespace emscape

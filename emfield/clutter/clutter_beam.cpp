@@ -51,6 +51,7 @@ PowerBeside powerBeside(const scenario::Antenna& antenna, double highest_rad) {
           twoWayPower(antenna, (n - power.beside + (i + 0.5) / kSamples - 0.5) * row_rad, highest_rad);
     sum += parts[n];
   }
+  if (!(sum > 0)) return {};
   for (int n = 0; n < count; ++n) power.parts[n] = static_cast<float>(parts[n] / sum);
   return power;
 }

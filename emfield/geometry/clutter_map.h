@@ -295,7 +295,7 @@ struct ClutterMapInputs {
 };
 ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar);
 
-/// The task of a radar's map without the ground; empty if it has no map. Two rows per beamwidth, 90 to 1440
+/// The task of a radar's map without the ground; empty if it has no map. Four rows per beamwidth, 90 to 1440
 /// in all; five, three or one cell per range cell, at most 2048 as far as the region's farthest point: at
 /// most 48 MB.
 /// @param extent  of paths that may extend beyond the region; null: none. The positions of the cells do not

@@ -20,8 +20,12 @@ bool haveSamePaths(const std::vector<scenario::Edit>& a, const std::vector<scena
 ScenarioPtr withNetEdits(const ScenarioPtr& edited) {
   const std::vector<scenario::Edit> edits = edited->edits(), net = foldedEdits(edits);
   if (net.size() == edits.size()) return edited;
-  const ScenarioPtr same = scenario::withEdits(*edited, net);
-  return same->hash == edited->hash ? same : edited;
+  try {
+    const ScenarioPtr same = scenario::withEdits(*edited, net);
+    return same->hash == edited->hash ? same : edited;
+  } catch (const Error&) {
+    return edited;
+  }
 }
 
 }  // namespace

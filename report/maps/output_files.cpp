@@ -55,6 +55,7 @@ std::string whatIs(const std::string& file, const scenario::Scenario& scenario) 
 std::string endsOf(const fs::path& file) {
   constexpr std::streamoff kBegin = 1 << 20, kEnd = 4096;
   std::ifstream in(file, std::ios::binary);
+  if (!in) return "not readable";
   std::string text(static_cast<std::size_t>(kBegin + kEnd), '\0');
   in.read(text.data(), kBegin);
   std::streamoff count = in.gcount();
@@ -72,14 +73,21 @@ bool isOwn(const fs::path& file) {
   const std::string text = endsOf(file), line = text.substr(0, text.find_first_of("\r\n"));
   if (file.extension() == ".csv") {  // headers of link, exposure and vertical
     const auto begins = [&](const char* header) { return line.rfind(header, 0) == 0; };
-    return text.empty() || begins("kind,time_s,emitter,to,") || begins("kind,azimuth_deg,line,range_m,") ||
-           begins("time_s,latitude_deg,longitude_deg,height_msl_m,height_agl_m,");
+    constexpr std::string_view kLast = ",state,decides";
+    const bool ends = line.size() > kLast.size() && line.substr(line.size() - kLast.size()) == kLast;
+    return text.empty() || begins("kind,time_s,emitter,to,active,range_m,") ||
+           begins("kind,azimuth_deg,line,range_m,slant_range_m,elevation_deg,") ||
+           (ends && begins("time_s,latitude_deg,longitude_deg,height_msl_m,height_agl_m,"));
   }
   if (file.extension() == ".json") {
     const nlohmann::json json = nlohmann::json::parse(readWholeText(file), nullptr, false);
-    return text.empty() || (json.is_object() && (json.contains("emscape") || json.contains("scenario") ||
-                                                 json.contains("input")));
+    if (!json.is_object()) return text.empty();
+    return json.contains("emscape") || (json.contains("schema_version") && json.contains("transfer")) ||
+           (json.contains("scenario") && json.contains("quantity") && json.contains("unit"));
   }
+  // Voxels alone, with a file beside them that says what they are.
+  if (file.extension() == ".raw" || file.extension() == ".nvdb")
+    return text.empty() || endsOf(file.string() + ".json").find("mscape") != std::string::npos;
   return text.empty() || text.find("mscape") != std::string::npos;
 }
 

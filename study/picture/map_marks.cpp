@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "emscape/base/error.h"
-#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/log.h"
 #include "scenario/file/far_outside.h"
 #include "scenario/map/places.h"
@@ -57,26 +56,27 @@ playback::MarkedPlane markedPlane(const MapGrid& grid) {
 
 namespace {
 
-/// Told of a file without a place in the region; empty: it has one.
+/// Told of a file without a place in the map; empty: it has one.
 std::string placesOutsideText(const std::string& file, const std::vector<scenario::Place>& places,
-                              const scenario::Region& region) {
-  const GeoFrame frame(region.origin);
-  const Vec3d half = region.size_m * 0.5;
+                              const playback::MarkedPlane& map, const scenario::Region& region) {
   std::string mistake;
   for (const scenario::Place& place : places) {
     Vec3d lowest{HUGE_VAL, HUGE_VAL, 0}, highest{-HUGE_VAL, -HUGE_VAL, 0};
     for (const std::vector<GeodeticPosition>& part : place.parts) {
-      for (const GeodeticPosition& position : part) {
-        const Vec3d at = frame.toLocal({position.latitude_deg, position.longitude_deg, 0});
+      for (const Vec3d& at : map.at(part)) {
         lowest = {std::min(lowest.x, at.x), std::min(lowest.y, at.y), 0};
         highest = {std::max(highest.x, at.x), std::max(highest.y, at.y), 0};
+      }
+      for (const GeodeticPosition& position : part) {
         if (mistake.empty())
           mistake = scenario::mistakenPlaceText(region, position.latitude_deg, position.longitude_deg);
       }
     }
-    if (lowest.x <= half.x && highest.x >= -half.x && lowest.y <= half.y && highest.y >= -half.y) return "";
+    if (lowest.x <= map.upper_m.x && highest.x >= map.lower_m.x && lowest.y <= map.upper_m.y &&
+        highest.y >= map.lower_m.y)
+      return "";
   }
-  return fmt::format("{}: none of its places is in the region, so that none is drawn{}", file,
+  return fmt::format("{}: none of its places is in the map, so that none is drawn{}", file,
                      mistake.empty() ? "" : "; " + mistake);
 }
 
@@ -85,10 +85,11 @@ std::string placesOutsideText(const std::string& file, const std::vector<scenari
 MapMarks::MapMarks(const MapStudy& study) : study_(study) {
   checkRings(study);
   if (study.view.places.empty()) return;
-  playback::GroundMarks marks(markedPlane(*study.grid));
+  const playback::MarkedPlane map = markedPlane(*study.grid);
+  playback::GroundMarks marks(map);
   for (const std::string& file : study.view.places) {
     const std::vector<scenario::Place> places = scenario::readPlaces(file);
-    const std::string outside = placesOutsideText(file, places, study.scenarios.front()->region);
+    const std::string outside = placesOutsideText(file, places, map, study.scenarios.front()->region);
     if (!outside.empty()) logWarning(outside);
     marks.addPlaces(places);
   }

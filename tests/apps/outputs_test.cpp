@@ -125,6 +125,23 @@ TEST_F(Outputs, SLOW_ReplaceFilesOfEmscapeAndNoOthers) {
   EXPECT_EQ(run(commands[2]).status, 0) << "an empty file, as of mktemp";
 }
 
+TEST_F(Outputs, SLOW_ReplaceVolumesAndStatesOfEmscape) {
+  for (const char* const volume : {"d.vdb", "d.nvdb", "d.vti", "d.vtu", "d.raw"}) {
+    const Arguments command{"compare",  quick_,          "--set-b",  "emitters.transmitter.power_w=5",
+                            "-o",       folder_ / "out", "--cell",   "4000",
+                            "--format", "png",           "--volume", folder_ / volume,
+                            "-q"};
+    EXPECT_EQ(run(command).status, 0) << volume;
+    EXPECT_EQ(run(command).status, 0) << volume << " replaces its own";
+  }
+  const std::string study = folder_.write("spec.json", R"({"schema_version": 1, "scenario": "x.yaml"})");
+  errorOfRun({"vertical", links_, "--emitter", "search radar", "--azimuth", "30", "-o", study}, kUsage);
+  const std::string state = folder_ / "a.view.json";
+  const Arguments command{"render", quick_, "--save-state", state, "-o", folder_ / "x.png", "-q"};
+  EXPECT_EQ(run(command).status, 0);
+  EXPECT_EQ(run(command).status, 0) << "replaces its own";
+}
+
 TEST_F(Outputs, OfCoverageDoNotReplaceAUsersFile) {
   folder_.write("study.json", "{\"schema_version\": 1}");
   expectRefused({"coverage", quick_, "-o", folder_.path().string()},

@@ -98,8 +98,7 @@ class SurfaceField : public test::OnBackends {
         ++compared;
         if (std::isinf(expected)) {
           EXPECT_EQ(found, volume->info.floor);
-        } else if (beside_borders == 0 || std::abs(static_cast<double>(found) - expected) <= tolerance ||
-                   --beside_borders == 0) {
+        } else if (std::abs(static_cast<double>(found) - expected) <= tolerance || beside_borders-- <= 0) {
           EXPECT_NEAR(static_cast<double>(found), expected, tolerance)
               << term << " at " << latitude_deg << ", " << longitude_deg << ", " << height_msl_m << " m";
         }

@@ -33,7 +33,7 @@ TEST(TrackTable, RowsOfOneTimeFarApartAreRefusedWithTheColumnThatTellsObjectsApa
               HasSubstr("as all times are equal"));
 }
 
-TEST(TrackTable, PointsThatMayBeBetweenThousandsAreRefusedBesideDecimalCommas) {
+TEST(TrackTable, SignsThatMayBeBetweenThousandsAreRefusedBesideOtherDecimals) {
   const auto table = [](const std::string& height) {
     return "time;lat;lon;alt_m\n0;44,3;-71,6;950,5\n30;44,31;-71,6;" + height + "\n60;44,32;-71,6;1.150,5\n";
   };
@@ -46,6 +46,11 @@ TEST(TrackTable, PointsThatMayBeBetweenThousandsAreRefusedBesideDecimalCommas) {
   for (const auto& [height, height_m] :
        {std::pair("1050", 1050.0), {"1.050,0", 1050.0}, {"0.050", 0.05}, {"1050.5", 1050.5}})
     EXPECT_EQ(readAs("s.csv", table(height)).objects.at(0).poses.at(1).height_msl_m, height_m) << height;
+  EXPECT_THAT(test::errorOf(
+                  [&] { readAs("s.csv", "time;lat;lon;alt_ft\n0;44.3;-71.6;900\n30;44.31;-71.6;35,000\n"); },
+                  ErrorCode::bad_input),
+              HasSubstr("s.csv:3: '35,000': is its comma decimal, or between thousands? Other numbers have "
+                        "decimal points ('44.3'); write it without a comma, or with a point"));
   const std::string points = "time;lat;lon;alt_m\n0.000;44.300;-71.6;950.5\n30.000;44.310;-71.6;950.123\n";
   EXPECT_EQ(readAs("s.csv", points).objects.at(0).poses.at(1).height_msl_m, 950.123);
 }

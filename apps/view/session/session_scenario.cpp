@@ -46,8 +46,13 @@ std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const st
 
 playback::ScenarioPtr Session::original() const {
   const playback::ScenarioPtr shown = scenario();
-  if (std::exchange(original_of_, shown) != shown)
-    original_ = shown && shown->source ? scenario::withEdits(*shown, {}) : shown;
+  if (original_of_ == shown) return original_;
+  original_ = shown;
+  try {
+    if (shown && shown->source) original_ = scenario::withEdits(*shown, {});
+  } catch (const Error&) {  // the file has a fault that the edits mend
+  }
+  original_of_ = shown;
   return original_;
 }
 

@@ -144,7 +144,7 @@ class ReportWriter {
         {},
         ""};
     std::vector<std::size_t> so_far;
-    const scenario::TerrainPtr terrain = scenario::loadTerrain(*study_.base);
+    const scenario::TerrainPtr terrain = terrainOfSites();
     std::string at_sea;
     for (const std::size_t site : chosen) {
       so_far.push_back(site);
@@ -164,6 +164,14 @@ class ReportWriter {
     writeCandidates(file, m, chosen);
   }
 
+  /// Null where the elevation files are no longer there: the report does without.
+  scenario::TerrainPtr terrainOfSites() const {
+    try {
+      return loadTerrain(*study_.base, study_.area);
+    } catch (const Error&) {
+      return nullptr;
+    }
+  }
   bool isAtSeaLevel(const scenario::Terrain* terrain, std::size_t v) const {
     constexpr double kSea_m = 0.5;
     return terrain != nullptr &&
