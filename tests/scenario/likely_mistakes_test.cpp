@@ -23,7 +23,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST(LikelyMistakes, EmittersOutsideTheRegionAreToldWithTheDistance) {
-  const Region& region = loadScenario(test::shippedScenario("quick.yaml"))->region;
+  const Region region = loadScenario(test::shippedScenario("quick.yaml"))->region;
   const auto eastBy = [&](double outside_m) {
     const GeodeticPosition at = geodesicDirect(region.origin.latitude_deg, region.origin.longitude_deg,
                                                kPi / 2, region.size_m.x / 2 + outside_m);
