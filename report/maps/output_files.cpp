@@ -88,6 +88,8 @@ bool isOwn(const fs::path& file) {
   // Voxels alone, with a file beside them that says what they are.
   if (file.extension() == ".raw" || file.extension() == ".nvdb")
     return text.empty() || endsOf(file.string() + ".json").find("mscape") != std::string::npos;
+  if (file.extension() == ".svg") return text.empty() || text.find("<!-- Emscape -->") != std::string::npos;
+  if (file.extension() == ".png" && !text.empty() && text.rfind("\x89PNG", 0) != 0) return false;
   return text.empty() || text.find("mscape") != std::string::npos;
 }
 
