@@ -249,15 +249,6 @@ struct OpenStudy {
   }
 };
 
-void checkStudyOutputs(const std::string& folder, const std::string& file, const study::StudySpec& spec) {
-  std::vector<report::NamedFile> outputs, inputs{{"the study", file}};
-  for (const std::string& name : study::StudyFolder::files())
-    outputs.push_back({"output", (std::filesystem::path(folder) / name).string()});
-  for (const std::string& named : spec.files) inputs.push_back({"a file that the study names", named});
-  report::checkOutputs(outputs, inputs, {spec.base});
-  report::checkReports(folder, {"report.html"}, "output");
-}
-
 std::string studyJson(const std::string& file, const Edits& edits, const std::string& folder, int jobs,
                       bool resume, const std::string& backend, Names worker, const ProgressCall& progress) {
   refuseForkedProcess();
@@ -265,7 +256,7 @@ std::string studyJson(const std::string& file, const Edits& edits, const std::st
   const nb::gil_scoped_release unlocked;
   requireWithin("jobs", jobs, 1, 1024, "");
   OpenStudy open(file, edits, folder, 0, true);
-  checkStudyOutputs(folder, file, open.loaded.spec);
+  report::checkStudyFolder(folder, open.loaded.spec, "output");
   open.begin(0);
   const FolderLock lock(open.folder.path(), ".study.lock");
   const std::vector<int> missing = open.folder.missingParts();
@@ -284,7 +275,7 @@ void beginStudy(const std::string& file, const Edits& edits, const std::string& 
   refuseForkedProcess();
   const nb::gil_scoped_release unlocked;
   OpenStudy open(file, edits, folder, 0, true);
-  checkStudyOutputs(folder, file, open.loaded.spec);
+  report::checkStudyFolder(folder, open.loaded.spec, "output");
   open.begin(parts);
 }
 

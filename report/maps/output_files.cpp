@@ -11,6 +11,7 @@
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/study/maps/products.h"
+#include "study/sweep/results/study_folder.h"
 
 namespace emscape::report {
 namespace {
@@ -71,11 +72,11 @@ std::string endsOf(const fs::path& file) {
 /// True for a file of this program, and for an empty one.
 bool isOwn(const fs::path& file) {
   const std::string text = endsOf(file), line = text.substr(0, text.find_first_of("\r\n"));
-  if (file.extension() == ".csv") {  // headers of link, exposure and vertical
+  if (file.extension() == ".csv") {  // headers of studies, link, exposure and vertical
     const auto begins = [&](const char* header) { return line.rfind(header, 0) == 0; };
     constexpr std::string_view kLast = ",state,decides";
     const bool ends = line.size() > kLast.size() && line.substr(line.size() - kLast.size()) == kLast;
-    return text.empty() || begins("kind,time_s,emitter,to,active,range_m,") ||
+    return text.empty() || begins("variant,name,") || begins("kind,time_s,emitter,to,active,range_m,") ||
            begins("kind,azimuth_deg,line,range_m,slant_range_m,elevation_deg,") ||
            (ends && begins("time_s,latitude_deg,longitude_deg,height_msl_m,height_agl_m,"));
   }
@@ -85,6 +86,9 @@ bool isOwn(const fs::path& file) {
     return json.contains("emscape") || (json.contains("schema_version") && json.contains("transfer")) ||
            (json.contains("scenario") && json.contains("quantity") && json.contains("unit"));
   }
+  if (file.extension() == ".geojson")  // the sites of a study
+    return text.empty() || text.find("\"chosen\":") != std::string::npos;
+  if (line.rfind("#!", 0) == 0) return text.find("\n#SBATCH --job-name=emscape-") != std::string::npos;
   // Voxels alone, with a file beside them that says what they are.
   if (file.extension() == ".raw" || file.extension() == ".nvdb")
     return text.empty() || endsOf(file.string() + ".json").find("mscape") != std::string::npos;
@@ -131,6 +135,16 @@ void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<Named
     if (!replaces_any && !isOwn(output.file))
       refuse(output, "a file that emscape did not write; give another name, or move it away first");
   }
+}
+
+void checkStudyFolder(const fs::path& folder, const study::StudySpec& study, const std::string& option,
+                      std::vector<NamedFile> others) {
+  std::vector<NamedFile> inputs{{"the study", study.file}};
+  for (const std::string& file : study.files) inputs.push_back({"a file that the study names", file});
+  for (const std::string& name : study::StudyFolder::files(study))
+    others.push_back({option, (folder / name).string()});
+  checkOutputs(others, inputs, {study.base});
+  checkReports(folder, {"report.html"}, option);
 }
 
 void checkReports(const fs::path& folder, const std::vector<std::string>& names, const std::string& option) {

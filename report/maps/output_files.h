@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "emscape/scenario/model/scenario.h"
+#include "study/sweep/definition/study_file.h"
 
 namespace emscape::report {
 
@@ -28,6 +29,12 @@ std::vector<NamedFile> outputsOf(const std::string& option, const std::vector<st
 void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
                   const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
                   bool replaces_any = false);
+
+/// Checks the folder of a study. @param option  name of the folder, for messages  @param others  further
+/// outputs
+/// @throws Error (usage) as checkOutputs() and checkReports()
+void checkStudyFolder(const std::filesystem::path& folder, const study::StudySpec& study,
+                      const std::string& option, std::vector<NamedFile> others = {});
 
 /// Checks reports in a folder. @param option  name of the folder, for the message
 /// @throws Error (usage) if one exists that none of `coverage`, `compare` and `study` wrote

@@ -80,6 +80,30 @@ TEST_F(Outputs, AreNotTheScenarioOrAFileThatItNames) {
                 "--slurm: " + study + " is the study");
 }
 
+TEST_F(Outputs, OfStudiesReplaceThoseOfEmscapeAndNoOthers) {
+  writeFile(folder_ / "sites.csv", "name,latitude_deg,longitude_deg\na,52,5\nb,52.02,5.02\n");
+  const std::string study = folder_.write(
+      "study.yaml",
+      "schema_version: 1\nscenario: quick.yaml\ntimes: 0\ncell_m: 5000\nsites: {platform: radar site, "
+      "candidates: sites.csv, choose: 1}\nmeasures:\n  - {name: covered, height: \"agl:300\"}\n");
+  const Arguments command{"study", study, "-o", folder_ / "st", "--jobs", "1"};
+  const Arguments scripts{"study", study, "-o", folder_ / "st", "--slurm", folder_ / "job.sh"};
+  for (int time = 0; time < 2; ++time) {
+    ASSERT_EQ(run(command).status, 0);
+    ASSERT_EQ(run(scripts).status, 0);
+    fs::remove_all(folder_ / "st/parts");
+  }
+  const std::string users = "#!/bin/sh\nexec emscape study s.yaml\nx,y\n";
+  for (const char* const name : {"st/results.csv", "st/results.nc", "st/sites.geojson", "job.sh"}) {
+    const std::string own = readFile(folder_ / name);
+    writeFile(folder_ / name, users);
+    EXPECT_THAT(errorOfRun(scripts, kUsage),
+                AllOf(HasSubstr(folder_ / name), HasSubstr("is a file that emscape did not write")));
+    EXPECT_EQ(readFile(folder_ / name), users);
+    writeFile(folder_ / name, own);
+  }
+}
+
 TEST_F(Outputs, AreNotAStepOfASeries) {
   ASSERT_EQ(run({"simulate", quick_, "-o", folder_ / "s", "--format", "vti", "--times", "0:1", "-q"}).status,
             0);

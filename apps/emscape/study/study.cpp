@@ -92,22 +92,10 @@ int work(const study::LoadedStudy& loaded, const study::StudyFolder& folder, con
   return 0;
 }
 
-/// Checks that neither the results nor the scripts replace a file of the study, or a report of another
-/// program.
-void checkStudyOutputs(const StudyCommand& command, const study::StudySpec& spec) {
-  std::vector<std::string> results;
-  for (const std::string& name : study::StudyFolder::files()) {
-    results.push_back((std::filesystem::path(command.folder) / name).string());
-  }
-  std::vector<report::NamedFile> outputs = report::outputsOf("--output", results);
-  if (!command.slurm.script.empty()) {
-    outputs.push_back({"--slurm", command.slurm.script});
-    outputs.push_back({"--slurm", mergeScriptOf(command.slurm)});
-  }
-  std::vector<report::NamedFile> inputs{{"the study", command.study}};
-  for (const std::string& file : spec.files) inputs.push_back({"a file that the study names", file});
-  report::checkOutputs(outputs, inputs, {spec.base}, true);
-  report::checkReports(command.folder, {"report.html"}, "--output");
+/// The scripts of --slurm; none if it was not given.
+std::vector<report::NamedFile> scriptsOf(const SlurmOptions& slurm) {
+  if (slurm.script.empty()) return {};
+  return report::outputsOf("--slurm", {slurm.script, mergeScriptOf(slurm)});
 }
 
 /// The files that --keep names; empty if it was not given.
@@ -167,7 +155,7 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   }
   const study::LoadedStudy loaded(command.study, command.edits, !command.worker);
   if (command.plan) return runPlan(loaded, command, watch.lap_ms() / 1000, global);
-  checkStudyOutputs(command, loaded.spec);
+  report::checkStudyFolder(command.folder, loaded.spec, "--output", scriptsOf(command.slurm));
   study::StudyFolder folder = loaded.folder(command.folder);
   const std::optional<int> planned = folder.partsOfManifest();
   const std::size_t variants = loaded.spec.variants.count();

@@ -73,8 +73,10 @@ int partsOf(const Json& record) {
 StudyFolder::StudyFolder(fs::path folder, const StudySpec& study, const StudyPlan& plan, std::string version)
     : folder_(std::move(folder)), study_(study), plan_(plan), version_(std::move(version)) {}
 
-std::vector<std::string> StudyFolder::files() {
-  return {kManifest, kCsv, kNetcdf, "report.html"};
+std::vector<std::string> StudyFolder::files(const StudySpec& study) {
+  std::vector<std::string> names{kManifest, kCsv, kNetcdf, "report.html"};
+  if (study.sites) names.emplace_back(kSites);
+  return names;
 }
 
 std::optional<StudyFolder::Manifest> StudyFolder::readManifest() const {

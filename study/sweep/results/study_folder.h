@@ -6,6 +6,7 @@
 ///     parts/part_00003.rows  the finished variants of an incomplete part
 ///     variants/              the kept files of each variant (VariantFiles)
 ///     results.csv results.nc report.html
+///     sites.geojson          of a search for sites
 #pragma once
 
 #include <cstdint>
@@ -38,8 +39,9 @@ struct StudyResults {
 
 class StudyFolder {
  public:
+  static constexpr const char* kSites = "sites.geojson";
   /// Names of the files that a study writes into its folder, besides those in parts/ and variants/.
-  static std::vector<std::string> files();
+  static std::vector<std::string> files(const StudySpec& study);
 
   /// @param version  of the program
   StudyFolder(std::filesystem::path folder, const StudySpec& study, const StudyPlan& plan,

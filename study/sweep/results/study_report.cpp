@@ -55,7 +55,7 @@ class ReportWriter {
 
   StudySummary write(const std::filesystem::path& file) {
     addInputs();
-    if (study_.sites) addSites(file.parent_path() / "sites.geojson");
+    if (study_.sites) addSites(file.parent_path() / StudyFolder::kSites);
     for (std::size_t m = 0; m < study_.measures.size(); ++m) addMeasure(m);
     addTable();
     addModels(report_, *study_.base);
