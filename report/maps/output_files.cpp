@@ -138,13 +138,14 @@ void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<Named
 }
 
 void checkStudyFolder(const fs::path& folder, const study::StudySpec& study, const std::string& option,
-                      std::vector<NamedFile> others) {
-  std::vector<NamedFile> inputs{{"the study", study.file}};
+                      const std::vector<NamedFile>& others) {
+  checkReports(folder, {"report.html"}, option);
+  std::vector<NamedFile> outputs, inputs{{"the study", study.file}};
   for (const std::string& file : study.files) inputs.push_back({"a file that the study names", file});
   for (const std::string& name : study::StudyFolder::files(study))
-    others.push_back({option, (folder / name).string()});
-  checkOutputs(others, inputs, {study.base});
-  checkReports(folder, {"report.html"}, option);
+    outputs.push_back({option, (folder / name).string()});
+  outputs.insert(outputs.end(), others.begin(), others.end());
+  checkOutputs(outputs, inputs, {study.base});
 }
 
 void checkReports(const fs::path& folder, const std::vector<std::string>& names, const std::string& option) {

@@ -34,7 +34,7 @@ void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<Named
 /// outputs
 /// @throws Error (usage) as checkOutputs() and checkReports()
 void checkStudyFolder(const std::filesystem::path& folder, const study::StudySpec& study,
-                      const std::string& option, std::vector<NamedFile> others = {});
+                      const std::string& option, const std::vector<NamedFile>& others = {});
 
 /// Checks reports in a folder. @param option  name of the folder, for the message
 /// @throws Error (usage) if one exists that none of `coverage`, `compare` and `study` wrote
