@@ -41,6 +41,7 @@ struct ColumnPart {
 struct ExcessScratch {
   double* range_m = nullptr;
   float* ground_msl_m = nullptr;
+  float* raised_msl_m = nullptr;       ///< ground_msl_m with clutter
   float* cover_m = nullptr;            ///< see TerrainProfile
   float* even_ground_msl_m = nullptr;  ///< for models that need even spacing; size: posts + 1
   float* height_msl_m = nullptr;
@@ -53,7 +54,7 @@ struct ExcessScratch {
 
   /// @param posts  of the longest profile
   static EMSCAPE_HD std::size_t bytes(int posts, int layers) {
-    return std::size_t(posts) * (sizeof(double) + (3 + kPostNumbers) * sizeof(float)) +
+    return std::size_t(posts) * (sizeof(double) + (4 + kPostNumbers) * sizeof(float)) +
            3 * sizeof(float) * std::size_t(layers) + sizeof(float) + sizeof(double);
   }
   /// @param memory  bytes(posts, layers), aligned for double
@@ -67,6 +68,7 @@ struct ExcessScratch {
       return taken;
     };
     scratch.ground_msl_m = take(posts);
+    scratch.raised_msl_m = take(posts);
     scratch.cover_m = take(posts);
     scratch.even_ground_msl_m = take(posts + 1);
     scratch.height_msl_m = take(layers);

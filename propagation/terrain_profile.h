@@ -21,9 +21,14 @@ struct TerrainProfile {
   /// Land cover: the height of the clutter on land, kSeaCover over the sea, NaN where it is unknown; null:
   /// unknown everywhere.
   const float* cover_m = nullptr;
+  /// Heights of the ground, where those of height_msl_m are raised by clutter; null: they are not.
+  const float* bare_msl_m = nullptr;
 
   /// The part of the profile up to a post.
-  EMSCAPE_HD TerrainProfile upTo(int last) const { return {range_m, height_msl_m, last + 1, cover_m}; }
+  EMSCAPE_HD TerrainProfile upTo(int last) const {
+    return {range_m, height_msl_m, last + 1, cover_m, bare_msl_m};
+  }
+  EMSCAPE_HD const float* ground_msl_m() const { return bare_msl_m != nullptr ? bare_msl_m : height_msl_m; }
 
   EMSCAPE_HD bool hasCover(int post) const { return cover_m != nullptr && cover_m[post] == cover_m[post]; }
   /// By the land cover; where it is unknown, ground at or below mean sea level.

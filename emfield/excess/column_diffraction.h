@@ -52,19 +52,22 @@ EMSCAPE_NOINLINE EMSCAPE_HD inline float smoothEarthNu(const DiffractionModel<fl
                                     [&](float range_m) { return posts.around(range_m); });
 }
 
-/// A post seen from the transmitter. Heights are above it; "plain" ones leave out the earth's bulge.
+/// A post seen from the transmitter. Heights are above it; "plain" ones leave out the earth's bulge and
+/// clutter.
 struct SeenPost {
   float range_m, plain_m, height_m;
   float root;        ///< 1 / sqrt(d1 d2)
   float per_beyond;  ///< 1 / d2
+  float not_plain;   ///< what the earth's bulge and clutter add to the slope from the receivers
 
   EMSCAPE_HD SeenPost(const PathPost& post, float distance_m, float base_msl_m, float tx_m,
                       float half_curvature)
-      : range_m(post.range_m), plain_m(post.height_msl_m - base_msl_m - tx_m) {
+      : range_m(post.range_m), plain_m(post.height_msl_m - base_msl_m - tx_m - post.raised_m) {
     const float product = range_m * (distance_m - range_m);
     root = approximateReciprocalRoot(product);
     per_beyond = root * root * range_m;
-    height_m = fmaf(half_curvature, product, plain_m);
+    height_m = fmaf(half_curvature, product, plain_m + post.raised_m);
+    not_plain = fmaf(half_curvature, range_m, post.raised_m * per_beyond);
   }
 };
 
@@ -77,6 +80,9 @@ struct SeenPost {
 class CandidatePosts {
  public:
   static constexpr int kMost = 512;
+
+  /// @param are_raised  by clutter
+  EMSCAPE_HD explicit CandidatePosts(bool are_raised) : are_raised_(are_raised) {}
 
   /// The largest measures of the posts so far, in order of their ranges, seen from a receiver.
   struct Records {
@@ -105,7 +111,9 @@ class CandidatePosts {
   };
 
   EMSCAPE_HD void set(int n, const PathPost& post) {
-    if (n < kMost) posts_[n] = post;
+    if (n >= kMost) return;
+    posts_[n] = {post.range_m, post.height_msl_m};
+    if (are_raised_) raised_m_[n] = post.raised_m;
   }
   /// They are those that were set before n.
   EMSCAPE_HD void end(int n) {
@@ -119,7 +127,7 @@ class CandidatePosts {
   template <class Visit>
   EMSCAPE_HD void each(const Visit& visit) const {
     EMSCAPE_UNROLL_BY(1)
-    for (int i = first_; i < end_; ++i) visit(posts_[i]);
+    for (int i = first_; i < end_; ++i) visit(at(i));
   }
   /// Keeps those for which is_needed(PathPost), called from the last one to the first one.
   template <class IsNeeded>
@@ -127,13 +135,22 @@ class CandidatePosts {
     first_ = end_;
     EMSCAPE_UNROLL_BY(1)
     for (int i = end_ - 1; i >= 0; --i) {
-      const PathPost post = posts_[i];
-      if (is_needed(post)) posts_[--first_] = post;
+      const PathPost post = at(i);
+      if (is_needed(post)) set(--first_, post);
     }
   }
 
  private:
-  PathPost posts_[kMost];
+  struct Bare {
+    float range_m, height_msl_m;
+  };
+  EMSCAPE_HD PathPost at(int i) const {
+    return {posts_[i].range_m, posts_[i].height_msl_m, are_raised_ ? raised_m_[i] : 0.0f};
+  }
+
+  Bare posts_[kMost];
+  float raised_m_[kMost];  ///< if are_raised_
+  bool are_raised_;
   int first_ = 0, end_ = kMost + 1;  ///< nothing was looked for
 };
 
@@ -151,7 +168,8 @@ class Receivers {
         tx_m_(DiffractionModel<float>::raised_m(task.model.tx_msl_m - base_msl_m_, 0)),
         edge_scale_(std::sqrt(2 * distance_m_ / task.model.model.earth.wavelength_m)),
         half_curvature_(task.model.model.half_curvature),
-        sea_fraction_(task.model.model.earth.sea_fraction) {}
+        sea_fraction_(task.model.model.earth.sea_fraction),
+        candidates_(task.ground.is_raised) {}
 
   /// Of a receiver.
   struct Maxima {
@@ -236,7 +254,7 @@ class Receivers {
       EMSCAPE_UNROLL
       for (int j = 0; j < kReceivers; ++j) edge[j] = nearest[j] = plain_rx[j] = plain[j] = -HUGE_VALF;
     }
-    EMSCAPE_HD void add(const SeenPost& post, float half_curvature) {
+    EMSCAPE_HD void add(const SeenPost& post) {
       EMSCAPE_UNROLL
       for (int j = 0; j < kReceivers; ++j) {
         const float above_line = fmaf(-slope[j], post.range_m, post.height_m);
@@ -244,7 +262,7 @@ class Receivers {
         edge[j] = fmaxf(edge[j], from_rx);
         if constexpr (kBoth) nearest[j] = fmaxf(nearest[j], above_line * post.root);
         if constexpr (kEarth) {  // read of those below the steepest plain ray, and so below the steepest one
-          plain_rx[j] = fmaxf(plain_rx[j], from_rx - half_curvature * post.range_m);
+          plain_rx[j] = fmaxf(plain_rx[j], from_rx - post.not_plain);
           plain[j] = fmaxf(plain[j], fmaf(-slope[j], post.range_m, post.plain_m));
         }
       }
@@ -256,7 +274,7 @@ class Receivers {
     }
   };
 
-  /// Sums over the posts of a path for the line fitted to the terrain and the share of the sea.
+  /// Sums over the posts of a path for the line fitted to the bare terrain and the share of the sea.
   struct TrendSums {
     float base_msl_m, v1 = 0, v2 = 0;  ///< as propagation::TerrainSums
     float sea_m = 0, before_m = 0, before_height_m = 0;
@@ -349,7 +367,7 @@ class Receivers {
       };
       is_whole = posts_.each(skips, [&](const PathPost& post) {
         unknown += post.height_msl_m - post.height_msl_m;
-        if constexpr (kEarth) trend.add(post.range_m, post.height_msl_m);
+        if constexpr (kEarth) trend.add(post.range_m, post.height_msl_m - post.raised_m);
         const SeenPost seen(post, d, base_msl_m, tx_m, half_curvature);
         const float per_range = (d - seen.range_m) * seen.root;
         tx = fmaxf(tx, per_range * (seen.height_m * seen.root));
@@ -359,7 +377,7 @@ class Receivers {
         if constexpr (kKeeps) {
           if (is_record) candidates_.set(kept++, post);
         }
-        several.add(seen, half_curvature);
+        several.add(seen);
       });
     } while (!is_whole);
     if constexpr (kKeeps) candidates_.end(kept);
@@ -379,7 +397,7 @@ class Receivers {
   template <int kReceivers, bool kEarth>
   EMSCAPE_NOINLINE EMSCAPE_HD void findAmongCandidates(const float* rx_m, Maxima* most) const {
     Several<kReceivers, kEarth, false> several(*this, rx_m);
-    candidates_.each([&](const PathPost& post) { several.add(seen(post), half_curvature_); });
+    candidates_.each([&](const PathPost& post) { several.add(seen(post)); });
     several.get(tx_slope_, most);
   }
 

@@ -42,21 +42,22 @@ class PathSearch {
         posts_(posts),
         visited_in_(obstacles.blocks.first_m.size()) {}
 
+  /// @tparam kBare  of the ground without the clutter that raises profiles
   /// @param boundOf(lane, lowered_m, tx_slope, first_m, last_m)  bound of valueOf over obstacles at those
   /// ranges
   /// @param valueOf(lane, range_m, height_m)  of an obstacle
   /// @param most    start of the search; receives the maxima
   /// @param guess   blocks that are visited first; receives those of the maxima
   /// @param settle  called after that; may leave out paths, which are set to infinity
-  template <class BoundOf, class ValueOf, class Settle>
-  void operator()(const BoundOf& boundOf, const ValueOf& valueOf, PathMaxima& most, int* guess,
-                  const Settle& settle) {
+  template <bool kBare = false, class BoundOf, class ValueOf, class Settle>
+  void find(const BoundOf& boundOf, const ValueOf& valueOf, PathMaxima& most, int* guess,
+            const Settle& settle) {
     ++number_;
     const int blocks = terrain_.blocks();
     const auto visitOnce = [&](int block) {
       if (visited_in_[block] == number_) return;
       visited_in_[block] = number_;
-      if (mayExceed(block, boundOf, most)) visit(block, valueOf, most);
+      if (mayExceed(block, boundOf, most)) visit<kBare>(block, valueOf, most);
     };
     for (int l = 0; l < kPathLanes; ++l) {
       if (guess[l] < blocks) visitOnce(guess[l]);
@@ -88,9 +89,9 @@ class PathSearch {
     }
     if (unknown != 0) posts_.leave(unknown);
   }
-  template <class BoundOf, class ValueOf>
-  void operator()(const BoundOf& boundOf, const ValueOf& valueOf, PathMaxima& most, int* guess) {
-    (*this)(boundOf, valueOf, most, guess, [] {});
+  template <bool kBare = false, class BoundOf, class ValueOf>
+  void find(const BoundOf& boundOf, const ValueOf& valueOf, PathMaxima& most, int* guess) {
+    find<kBare>(boundOf, valueOf, most, guess, [] {});
   }
 
  private:
@@ -136,13 +137,13 @@ class PathSearch {
     return is_any != 0;
   }
 
-  template <class ValueOf>
+  template <bool kBare, class ValueOf>
   void visit(int block, const ValueOf& valueOf, PathMaxima& most) {
     posts_.read(block);
     for (int n = 0; n < posts_.count(); ++n) {
       const PathPosts::Slot& slot = posts_[n];
       unsigned doubtful = 0;
-      if (posts_.areRaised()) {
+      if (!kBare && posts_.areRaised()) {
         const float cover_m = terrain_.cover_m()[block];
         unsigned raised = 0;
 #pragma omp simd reduction(| : raised)

@@ -41,12 +41,8 @@ EMSCAPE_SIMD_CLONES void boundBlocks(const SectorObstacles& obstacles, const Sec
 }  // namespace
 
 SectorObstacles::SectorObstacles(const propagation::DiffractionModel<float>& of_model, float of_tx_msl_m,
-                                 const SectorPosts& of_posts, const GroundPosts& of_ground, float of_cover_m)
-    : model(of_model),
-      tx_msl_m(of_tx_msl_m),
-      posts(of_posts),
-      ground(of_ground),
-      highest_cover_m(of_cover_m) {
+                                 const SectorPosts& of_posts, const GroundPosts& of_ground)
+    : model(of_model), tx_msl_m(of_tx_msl_m), posts(of_posts), ground(of_ground) {
   blocks.first_m.assign(posts.first_m(), posts.first_m() + posts.blocks());
   blocks.last_m.assign(posts.last_m(), posts.last_m() + posts.blocks());
   const auto pad = [](ObstacleRanges& ranges) {
@@ -124,11 +120,9 @@ EMSCAPE_SIMD_CLONES propagation::TerrainTrend<float> SectorBounds::highestTrend(
   const float before_m = terrain_.height_msl_m()[SectorPosts::inGroups(before)] - base_msl_m();
   sums.add(obstacles_.ground.ranges_m[before], static_cast<double>(before_m), to.distance_m,
            static_cast<double>(ground_m));
-  // The weight of a height in either end of the line is at most twice that in the mean height. Clutter of one
-  // height along two thirds of the path, where the weights are positive, raises it by 4/3 of it.
+  // The weight of a height in either end of the line is at most twice that in the mean height.
   const float most_m =
-      2 * static_cast<float>(differences_m2_[before / kBlock]) / static_cast<float>(to.distance_m) +
-      obstacles_.highest_cover_m * (4.0f / 3);
+      2 * static_cast<float>(differences_m2_[before / kBlock]) / static_cast<float>(to.distance_m);
   return propagation::clearTrend(static_cast<float>(sums.start_m(to.distance_m)) + most_m,
                                  static_cast<float>(sums.end_m(to.distance_m)) + most_m, ground_m);
 }

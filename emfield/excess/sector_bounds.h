@@ -27,7 +27,6 @@ struct SectorObstacles {
   float tx_msl_m;
   const SectorPosts& posts;
   const GroundPosts& ground;
-  float highest_cover_m;  ///< by which profiles are raised
   ObstacleRanges blocks, groups;
   /// In groups (SectorPosts), of the ranges that a post stands for: the least bulge of the earth r^2 / (2 a),
   /// and 1 / r of the nearest and the farthest.
@@ -35,7 +34,7 @@ struct SectorObstacles {
   std::vector<float> has_clutter;  ///< in groups: 1, or 0 near the emitter
 
   SectorObstacles(const propagation::DiffractionModel<float>& of_model, float of_tx_msl_m,
-                  const SectorPosts& of_posts, const GroundPosts& of_ground, float of_cover_m);
+                  const SectorPosts& of_posts, const GroundPosts& of_ground);
 };
 
 /// The same of each block, or group, of a sector.
@@ -60,8 +59,8 @@ class SectorBounds {
   /// Largest tx_slope of a block and all before it.
   float highestTxSlope(int block) const { return highest_tx_slope_[block]; }
 
-  /// The line fitted to the terrain of a path is nowhere above this one, from the middle of the sector; no
-  /// obstacle is known to be above the line of sight.
+  /// The line fitted to the bare terrain of a path is nowhere above this one, from the middle of the sector;
+  /// no obstacle is known to be above the line of sight.
   /// @param before  last regular post before the receivers
   propagation::TerrainTrend<float> highestTrend(const SectorPath& to, int before);
 

@@ -44,7 +44,7 @@ class PathGroup {
 
   /// Leaves the paths for which the smooth earth may have a loss. It has none by the ground below the
   /// antennas, or by the line fitted to the terrain, which obstacles above the line of sight lower (P.526-15
-  /// eq. (63) to (66)); all without the earth's bulge.
+  /// eq. (63) to (66)); all without the earth's bulge, and of the ground without clutter.
   void leaveThoseInEarth() {
     const float tx_m = bounds_.tx_m();
     TerrainTrend trends[kPathLanes];
@@ -82,7 +82,7 @@ class PathGroup {
     const auto isSought = [&](int l) { return paths.is_left[l] == 0 && isBelow(l); };
     PathMaxima tx(isSought, [](int) { return -HUGE_VALF; });
     if (tx.areAny()) {
-      search_(
+      search_.find(
           [](int, float, float tx_slope, float, float) { return tx_slope; },
           [=](int, float range, float height) { return (height - k * range * range - tx_m) * (1 / range); },
           tx, memory_.tx_block);
@@ -95,7 +95,7 @@ class PathGroup {
       for (int l = 0; l < kPathLanes; ++l) slope[l] = (rx_m[l] - tx_m) / d[l];
       PathMaxima rx(isSought, [](int) { return -HUGE_VALF; });
       if (rx.areAny()) {
-        search_(
+        search_.find(
             [=, &bulge](int l, float lowered, float, float first_m, float last_m) {
               const float above = lowered + bulge[l] * d[l] - rx_m[l];
               return above / (d[l] - (above > 0 ? last_m : first_m)) - bulge[l];
@@ -126,7 +126,7 @@ class PathGroup {
   void findNearest(const float* slope, PathMaxima& nu, int* guess) {
     const float tx_m = bounds_.tx_m(), k = model_.half_curvature, wavelength_m = model_.earth.wavelength_m;
     const float* const d = paths.distance_m;
-    search_(
+    search_.find(
         [=](int l, float lowered, float, float first_m, float last_m) {
           const float rise = k * d[l] - slope[l], half = d[l] / 2;
           const float above = lowered - tx_m + rise * (rise > 0 ? last_m : first_m);
@@ -162,7 +162,7 @@ class PathGroup {
           highest.value[l] = HUGE_VALF;
       }
     };
-    search_(
+    search_.find<true>(
         [=, &slope](int l, float lowered, float, float first_m, float last_m) {
           return lowered + k * last_m * last_m - tx_m - slope[l] * (slope[l] > 0 ? first_m : last_m);
         },
@@ -173,11 +173,11 @@ class PathGroup {
     PathMaxima tx(isSearched, [&](int l) { return slope[l]; });
     PathMaxima rx(isSearched, [&](int l) { return -slope[l]; });
     if (tx.areAny()) {
-      search_(
+      search_.find<true>(
           [=](int, float, float lowered_slope, float, float last_m) { return lowered_slope + k * last_m; },
           [=](int, float range, float height) { return (height - tx_m) * (1 / range); }, tx,
           memory_.plain_tx_block);
-      search_(
+      search_.find<true>(
           [=](int l, float lowered, float, float first_m, float last_m) {
             const float above = lowered + k * last_m * last_m - rx_m[l];
             return above / (d[l] - (above > 0 ? last_m : first_m));
@@ -298,8 +298,7 @@ std::vector<char> fillSurfaceDiffraction(const DiffractionTask& task, const Terr
   const PathSectors sectors(task.station, task.grid, sector_count);
   std::optional<BlockCover> cover;
   if (task.ground.is_raised) cover.emplace(task.ground.terrain);
-  const SectorObstacles obstacles(task.model.model, task.model.tx_msl_m, sector_posts, task.ground,
-                                  cover ? bounds.highestCoverOfAll_m() : 0);
+  const SectorObstacles obstacles(task.model.model, task.model.tx_msl_m, sector_posts, task.ground);
   parallelFor(sectors.count(), 16, [&](int begin, int end) {
     SectorTerrain terrain(task.station, task.ground, bounds, sector_posts);
     SectorBounds of_sector(obstacles, terrain);

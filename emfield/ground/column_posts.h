@@ -16,6 +16,7 @@ namespace emscape::emfield {
 /// A post between the emitter and the receivers.
 struct PathPost {
   float range_m, height_msl_m;
+  float raised_m = 0;  ///< of the height: clutter
 };
 
 /// The posts of a path with posts at crossings: see chord_crossings.h. Regular posts elsewhere.
@@ -62,8 +63,8 @@ class ColumnPosts {
     return true;
   }
 
-  /// Calls visit(PathPost) for some regular posts in their order: every second one, of long paths some
-  /// hundred.
+  /// Calls visit(PathPost) for some regular posts of the bare ground in their order: every second one, of
+  /// long paths some hundred.
   template <class Visit>
   EMSCAPE_HD void eachOfSome(const Visit& visit) {
     const int regular = ground_.lastBefore(path_.distance_m) + 1, step = larger(2, regular / 640);
@@ -75,8 +76,7 @@ class ColumnPosts {
       const int end = n + 1 < of_path.count ? ground_.lastBefore(begin_m + of_path.length_m) + 1 : regular;
       if (i >= end) continue;
       const TerrainChord& chord = chordOf(n);
-      const bool is_simple =
-          !ground_.is_smooth && !ground_.is_raised && chord.in_raster.corner_msl_m != nullptr;
+      const bool is_simple = !ground_.is_smooth && chord.in_raster.corner_msl_m != nullptr;
       const float* const corner_msl_m = chord.in_raster.corner_msl_m;
       const int row_posts = chord.in_raster.row_posts;
       const Parabola<float> column = chord.in_raster.column, row = chord.in_raster.row;
@@ -255,14 +255,11 @@ class ColumnPosts {
     return static_cast<float>(path_.distance_m) * static_cast<float>(propagation::kBeforeReceivers);
   }
 
-  /// Height above mean sea level (m), with the clutter where that counts; NaN over missing terrain.
+  /// Height of the bare ground above mean sea level (m); NaN over missing terrain.
   EMSCAPE_NOINLINE EMSCAPE_HD float heightAt(const TerrainChord& chord, double range_m) const {
     float height_msl_m = chord.in_raster.corner_msl_m != nullptr ? chord.in_raster.heightAt(range_m) : NAN;
     if (std::isnan(height_msl_m)) height_msl_m = amongRasters(ground_, chord, range_m);
-    return raised(chord, range_m, height_msl_m);
-  }
-  EMSCAPE_HD float raised(const TerrainChord& chord, double range_m, float height_msl_m) const {
-    return ground_.is_raised ? height_msl_m + clutterAt(chord, range_m, height_msl_m) : height_msl_m;
+    return height_msl_m;
   }
   // Separate calls, so that their registers are not part of those of the loops over posts.
   EMSCAPE_NOINLINE static EMSCAPE_HD void prepare(const Station& station, const GroundPosts& ground,
@@ -381,9 +378,11 @@ class ColumnPosts {
         const float part = is_few ? few.part : most.part;
         const bool is_crossing = part <= end && part < 2;
         PathPost post{is_crossing ? rangeAt(part) : HUGE_VALF, 0};
+        auto exact_m = static_cast<double>(post.range_m);
         if (other_m <= post.range_m) {
           if (!is_crossing && (end < 2 || other_m == HUGE_VALF)) break;
-          post = {fminf(other_m, farthest_m), ground_.is_smooth ? 0 : heightAt(chord, others.range_m)};
+          exact_m = others.range_m;
+          post = {fminf(other_m, farthest_m), ground_.is_smooth ? 0 : heightAt(chord, exact_m)};
           other_m = others.advance();
         } else {
           const Parabola<float> coordinate = is_few ? most.lines.coordinate : few.lines.coordinate;
@@ -393,9 +392,11 @@ class ColumnPosts {
               corner_msl_m + ((is_few ? few.line * few.step : most.line * most.step) + cell * across);
           post.height_msl_m = lerp(near[0], near[across], at - static_cast<float>(cell));
           unknown += post.height_msl_m;
-          if (is_raised)
-            post.height_msl_m = raised(chord, static_cast<double>(post.range_m), post.height_msl_m);
           is_few ? few.advance() : most.advance();
+        }
+        if (is_raised) {
+          post.raised_m = clutterAt(chord, exact_m, post.height_msl_m);
+          post.height_msl_m += post.raised_m;
         }
         visit(post);
       }

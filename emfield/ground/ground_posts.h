@@ -267,16 +267,19 @@ struct PostReader {
 /// Most posts for clutter of any path.
 constexpr int kMostClutterPosts = 40;
 
-/// Adds the clutter's height to the posts of a profile, except near its ends.
-/// @param cover_m  see TerrainProfile
-EMSCAPE_HD inline void raiseByClutter(const double* range_m, const float* cover_m, int count,
-                                      float* ground_msl_m) {
-  const double path_m = range_m[count - 1];
-  for (int i = 0; i < count; ++i) {
-    const bool is_between = isClutterAt(range_m[i], path_m);
-    const float raise_m = cover_m[i] > 0 ? cover_m[i] : 0.0f;  // not if it is NaN
-    ground_msl_m[i] += is_between ? raise_m : 0.0f;
+/// The profile raised by the clutter's heights, except near its ends.
+/// @param profile     with cover_m
+/// @param raised_msl_m  memory for the heights; must outlive the result
+EMSCAPE_HD inline TerrainProfile raiseByClutter(TerrainProfile profile, float* raised_msl_m) {
+  const double path_m = profile.range_m[profile.count - 1];
+  for (int i = 0; i < profile.count; ++i) {
+    const bool is_between = isClutterAt(profile.range_m[i], path_m);
+    const float raise_m = profile.cover_m[i] > 0 ? profile.cover_m[i] : 0.0f;  // not if it is NaN
+    raised_msl_m[i] = profile.height_msl_m[i] + (is_between ? raise_m : 0.0f);
   }
+  profile.bare_msl_m = profile.height_msl_m;
+  profile.height_msl_m = raised_msl_m;
+  return profile;
 }
 
 /// The height (m) of the ground at a point.
@@ -330,7 +333,7 @@ EMSCAPE_HD TerrainProfile readProfile(const Station& station, const GroundPosts&
   if (!ground.is_smooth && ground.terrain.hasCover()) {
     read.readCover(station, ground, point, scratch.range_m, scratch.ground_msl_m, count, scratch.cover_m);
     profile.cover_m = scratch.cover_m;
-    if (ground.is_raised) raiseByClutter(scratch.range_m, scratch.cover_m, count, scratch.ground_msl_m);
+    if (ground.is_raised) return raiseByClutter(profile, scratch.raised_msl_m);
   }
   return profile;
 }

@@ -118,19 +118,14 @@ TerrainBounds::TerrainBounds(const scenario::TerrainView& terrain) {
 
 void TerrainBounds::boundCover(const scenario::TerrainView& terrain) {
   const TerrainRaster& raster = terrain.rasters[0];
-  const float of_classes_m = ClassCovers(terrain.cover).highest_m();
   if (terrain.surface_count == 0) {  // a class may be anywhere
-    highest_cover_m_.assign(steepest_.size(), of_classes_m);
+    highest_cover_m_.assign(steepest_.size(), ClassCovers(terrain.cover).highest_m());
   } else if (terrain.surface_count == 1 && isSameGrid(raster, terrain.surfaces[0])) {
     highest_cover_m_ = largestOfWindows(raster, [&](int j, float* highest_m) {
       const long long row = static_cast<long long>(j) * raster.columns;
       differencesOfRow(terrain.surfaces[0].heights_msl_m + row, raster.heights_msl_m + row, raster.columns,
                        highest_m);
     });
-  }
-  highest_of_all_m_ = of_classes_m;
-  for (const float highest_m : highest_cover_m_) {
-    if (highest_m < HUGE_VALF) highest_of_all_m_ = std::max(highest_of_all_m_, highest_m);
   }
 }
 

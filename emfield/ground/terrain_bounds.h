@@ -32,15 +32,12 @@ class TerrainBounds {
   /// surface model is void. Null: there is no clutter, or it has
   /// no bounds because the surface model's posts are not those of the raster.
   const float* highestCover_m() const { return highest_cover_m_.empty() ? nullptr : highest_cover_m_.data(); }
-  /// The same of all windows, with the classes' heights in place of infinity.
-  float highestCoverOfAll_m() const { return highest_of_all_m_; }
 
  private:
   void boundCover(const scenario::TerrainView& terrain);
 
   int windows_ = 0;
   std::vector<float> steepest_, highest_cover_m_;
-  float highest_of_all_m_ = 0;
 };
 
 }  // namespace emscape::emfield

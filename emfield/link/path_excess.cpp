@@ -104,12 +104,11 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
       return;
     }
     // The parts of the path over bare ground, and what the clutter adds to their sum.
-    std::vector<float> bare_m = cover_m, raised_msl_m = heights_msl_m;
+    std::vector<float> bare_m = cover_m, raised_msl_m(heights_msl_m.size());
     bare(bare_m);
-    propagation::TerrainProfile without = posts, with = posts;
+    propagation::TerrainProfile without = posts;
     without.cover_m = bare_m.data();
-    if (is_raised) raiseByClutter(posts.range_m, posts.cover_m, posts.count, raised_msl_m.data());
-    with.height_msl_m = raised_msl_m.data();
+    const propagation::TerrainProfile with = is_raised ? raiseByClutter(posts, raised_msl_m.data()) : posts;
     propagation::PathColumn over_ground(without, profile.range_m, end_msl_m, profile.azimuth_rad);
     propagation::PathColumn over_clutter(with, profile.range_m, end_msl_m, profile.azimuth_rad);
     static_cast<propagation::Explanation&>(excess) = model.explain(inputs, over_ground);

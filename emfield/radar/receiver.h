@@ -48,7 +48,8 @@ double partInBand(const scenario::Emitter& emitter, double tuned_hz, double widt
 double receivingArea_m2(const scenario::Emitter& emitter, const scenario::ReceiverProfile& receiver);
 
 /// The target of maps, volumes and vertical diagrams, where a scenario has others in 'targets', which they do
-/// not use: "1 m2 ('target_rcs_m2' of each radar), not 'plane' of 'targets'"; else empty.
+/// not use: "1 m2 ('target_rcs_m2' of each radar), ; 'plane' of 'targets' has another, for
+/// link and exposure"; else empty.
 std::string targetText(const scenario::Scenario& scenario);
 
 /// The curve of a radar's detector. Radars with the same detector share a curve while it is in use.

@@ -173,12 +173,12 @@ EMSCAPE_HD double lengthOverSea_m(int count, RangeOf rangeOf, HeightOf heightOf)
 struct TerrainSums {
   double v1 = 0, v2 = 0;
 
-  /// Adds the interval that ends at post i >= 1. Heights are relative to the first post.
+  /// Adds the interval that ends at post i >= 1 of the ground. Heights are relative to the first post.
   /// @see P.526-15 eq. (58), (59)
   EMSCAPE_HD void add(const TerrainProfile& profile, int i) {
-    const double base = profile.height_msl_m[0];
-    add(profile.range_m[i - 1], profile.height_msl_m[i - 1] - base, profile.range_m[i],
-        profile.height_msl_m[i] - base);
+    const float* const ground_msl_m = profile.ground_msl_m();
+    const double base = ground_msl_m[0];
+    add(profile.range_m[i - 1], ground_msl_m[i - 1] - base, profile.range_m[i], ground_msl_m[i] - base);
   }
   /// Adds an interval from one range and height (m) to the next.
   EMSCAPE_HD void add(double before, double h_before, double d, double h) {
@@ -244,7 +244,9 @@ EMSCAPE_HD Real bullingtonNu(const DiffractionModel<Real>& model, const double* 
   return nu;
 }
 
-/// Loss of one path over a profile whose last post is below the receiver.
+/// Loss of one path over a profile whose last post is below the receiver. Where the profile is raised by
+/// clutter, the smooth surface is that of the bare ground, as in P.1812-8 (Attachment 1 to Annex 1, section
+/// 5.6) and P.452-18: otherwise trees over flat ground would raise the antennas above it.
 /// @param tx_msl_m, rx_msl_m  of the antennas; see kDiffractionAboveGround
 /// @return 0 with a single post; all NaN over missing terrain (NaN)
 /// @accuracy float within 0.02 dB of double to 500 km, 20 MHz to 40 GHz
@@ -262,6 +264,7 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
   const Real tx = model.raised_m(tx_msl_m - base, 0);
   const Real rx = model.raised_m(rx_msl_m - base, trend.rx_ground_msl_m);
   const auto heightOf = [&](int i) { return Real(profile.height_msl_m[i]) - base; };
+  const float* const ground_msl_m = profile.ground_msl_m();
 
   if (last == 0) {  // from the antenna to itself
     result.loss_db = std::isnan(base) ? base : Real(0);
@@ -274,7 +277,7 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
     sums.add(profile, i);
     if (i == last) break;
     const Real d1 = Real(profile.range_m[i]), d2 = d - d1;
-    const Real above = heightOf(i) - tx - slope * d1;
+    const Real above = Real(ground_msl_m[i]) - base - tx - slope * d1;
     trend.highest_m = above > trend.highest_m ? above : trend.highest_m;
     trend.tx_angle = above / d1 > trend.tx_angle ? above / d1 : trend.tx_angle;
     trend.rx_angle = above / d2 > trend.rx_angle ? above / d2 : trend.rx_angle;
@@ -292,8 +295,7 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
   SphericalEarth<Real> earth = model.earth;
   if (model.sea_by_height) {
     const double sea_m = lengthOverSea_m(
-        profile.count, [&](int i) { return profile.range_m[i]; },
-        [&](int i) { return profile.height_msl_m[i]; });
+        profile.count, [&](int i) { return profile.range_m[i]; }, [&](int i) { return ground_msl_m[i]; });
     earth.sea_fraction = Real(sea_m / distance_m);
   }
   result.loss_db = result.terrain_db;

@@ -71,10 +71,11 @@ void inverseRoot(const Lanes& x, Lanes& root) {
 }
 
 /// The posts of a profile between the transmitter and the receivers over its end. Heights are above the first
-/// post unless stated otherwise; "plain" values leave out the earth's bulge.
+/// post unless stated otherwise; "plain" values leave out the earth's bulge, and the clutter by which a
+/// profile is raised.
 class LaneColumn {
  public:
-  static constexpr int kArrays = 5;
+  static constexpr int kArrays = 7;
 
   /// @param memory  kArrays arrays
   /// @param size    of each: a multiple of kLanes, at least the number of the profile's posts
@@ -88,7 +89,10 @@ class LaneColumn {
         tx_m_(model_.raised_m(excess.tx_msl_m - base_msl_m_, 0)),
         edge_scale_(std::sqrt(2 * distance_m_ / model_.earth.wavelength_m)),
         range_m_(memory),
-        posts_{memory + size, memory + 2 * size, memory + 3 * size, memory + 4 * size} {
+        posts_{memory + size,     memory + 2 * size, memory + 3 * size,
+               memory + 4 * size, memory + 5 * size, memory + 6 * size},
+        is_raised_(column.profile.bare_msl_m != nullptr) {
+    if (!is_raised_) posts_.plain_tx_m = posts_.above_tx_m;
     setPosts();
   }
 
@@ -149,9 +153,16 @@ class LaneColumn {
       above_tx_m[i] = heights_msl_m[i] - base_msl_m - tx_m;
       unknown += above_tx_m[i] - above_tx_m[i];
     }
+    if (is_raised_) {
+      const float* const bare_msl_m = column_.profile.bare_msl_m + 1;
+      float* const plain_tx_m = posts_.plain_tx_m;
+#pragma omp simd
+      for (int i = 0; i < count; ++i) plain_tx_m[i] = bare_msl_m[i] - base_msl_m - tx_m;
+    }
     for (int i = count; i % kLanes != 0; ++i) {
       range_m[i] = range_m[count - 1];
       above_tx_m[i] = above_tx_m[count - 1];
+      posts_.plain_tx_m[i] = posts_.plain_tx_m[count - 1];
     }
     is_known_ = !std::isnan(unknown);
   }
@@ -163,17 +174,19 @@ class LaneColumn {
     setAll(-HUGE_VALF, tx);
     clear = plain_tx = tx;
     for (int i = 0; i < count_; i += kLanes) {
-      Lanes range, above, root;
+      Lanes range, above, plain, root;
       load(range_m_ + i, range);
       load(posts_.above_tx_m + i, above);
+      load(posts_.plain_tx_m + i, plain);
       const Lanes beyond = distance_m_ - range, product = range * beyond;
       inverseRoot(product, root);
       const Lanes over_root = (above + model_.half_curvature * product) * root, per_range = beyond * root;
       takeLarger(per_range * over_root, tx);
       takeLarger(per_range * (over_root + clearance), clear);
-      takeLarger(per_range * (above * root), plain_tx);
+      takeLarger(per_range * (plain * root), plain_tx);
       store(over_root, posts_.height + i);
       store(range * root, posts_.range + i);
+      store(range * root * root, posts_.per_beyond + i);
     }
     tx_slope_ = largestOf(tx);
     clear_slope_ = largestOf(clear);
@@ -196,7 +209,7 @@ class LaneColumn {
     /// By how much the posts of a block exceed those so far in some measure: `over`. @return false: none does
     const auto exceed = [&](int i, float slope, float rx_slope_at, float nearest_at, Largest& so_far,
                             Lanes& over) {
-      Lanes range, height, range_m, above_tx_m, plain_rx_slope, plain_m;
+      Lanes range, height, range_m, plain_tx_m, per_beyond, plain_rx_slope, plain_m;
       load(posts_.range + i, range);
       load(posts_.height + i, height);
       const Lanes nearest = height - nearest_at * range, rx_slope = (height - rx_slope_at * range) * range;
@@ -204,9 +217,10 @@ class LaneColumn {
       takeLarger(rx_slope - so_far.rx_slope, over);
       if (in_earth) {
         load(range_m_ + i, range_m);
-        load(posts_.above_tx_m + i, above_tx_m);
-        plain_rx_slope = (height - slope * range) * range - model_.half_curvature * range_m;
-        plain_m = above_tx_m - slope * range_m;
+        load(posts_.plain_tx_m + i, plain_tx_m);
+        load(posts_.per_beyond + i, per_beyond);
+        plain_m = plain_tx_m - slope * range_m;
+        plain_rx_slope = plain_m * per_beyond;
         takeLarger(plain_rx_slope - so_far.plain_rx_slope, over);
         takeLarger(plain_m - so_far.plain_m, over);
       }
@@ -248,7 +262,8 @@ class LaneColumn {
         candidates_ += under[i] <= 0 ? 1 : 0;
         posts_.height[to] = posts_.height[i];
         posts_.range[to] = posts_.range[i];
-        posts_.above_tx_m[to] = posts_.above_tx_m[i];
+        posts_.plain_tx_m[to] = posts_.plain_tx_m[i];
+        posts_.per_beyond[to] = posts_.per_beyond[i];
         posts_.range_m[to] = range_m_[i];
       }
     }
@@ -269,8 +284,9 @@ class LaneColumn {
       if (some_above) takeLarger(above, nearest);
       if (some_below) takeLarger(above * range, rx_slope);
       if (first >= in_earth) continue;
-      takeLarger(above * range - model_.half_curvature * posts_.range_m[i], plain_rx_slope);
-      takeLarger(posts_.above_tx_m[i] - slope * posts_.range_m[i], plain_m);
+      const Lanes plain = posts_.plain_tx_m[i] - slope * posts_.range_m[i];
+      takeLarger(plain * posts_.per_beyond[i], plain_rx_slope);
+      takeLarger(plain, plain_m);
     }
     float heights[kLanes], slopes[kLanes], loss_of[kLanes];
     store(nearest, heights);
@@ -291,12 +307,12 @@ class LaneColumn {
     }
   }
 
-  /// The line fitted to the terrain.
+  /// The line fitted to the bare terrain.
   void findTrend() {
     if (has_trend_) return;
     has_trend_ = true;
     const double* const range_m = column_.profile.range_m;
-    const float* const height_msl_m = column_.profile.height_msl_m;
+    const float* const height_msl_m = column_.profile.ground_msl_m();
     const auto base = static_cast<double>(base_msl_m_);
     const int last = count_ + 1;
     const double last_m = static_cast<double>(ground_m_) * (range_m[last] - range_m[last - 1]);
@@ -364,7 +380,10 @@ class LaneColumn {
     float* above_tx_m;
     float *height, *range;  ///< terms of the height above a line of sight over sqrt(d1 d2)
     float* range_m;         ///< of candidates alone
+    float* plain_tx_m;      ///< above_tx_m of the bare ground
+    float* per_beyond;      ///< 1 over the distance (m) from the receivers
   } posts_;
+  bool is_raised_;
   int candidates_ = 0;
   float tx_slope_ = -HUGE_VALF;        ///< largest slope from the transmitter to an obstacle
   float clear_slope_ = -HUGE_VALF;     ///< of the lowest line of sight that all obstacles are clear of

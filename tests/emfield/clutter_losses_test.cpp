@@ -187,9 +187,12 @@ TEST(ClutterHeights, OfAnEarlierBudgetAreReused) {
 TEST(ClutterHeights, AreAddedFromFiftyMetresOfTheEndsOn) {
   const double range_m[] = {0, 20, 49, 50, 500, 949, 950, 951, 1000};
   const float cover_m[] = {15, 15, 15, 15, NAN, 15, 15, 15, 15};
-  float ground_m[] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
-  raiseByClutter(range_m, cover_m, 9, ground_m);
-  EXPECT_THAT(ground_m, ::testing::ElementsAre(1, 1, 1, 16, 1, 16, 16, 1, 1));
+  const float ground_m[] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
+  float raised_m[9];
+  const propagation::TerrainProfile raised = raiseByClutter({range_m, ground_m, 9, cover_m}, raised_m);
+  EXPECT_THAT(raised_m, ::testing::ElementsAre(1, 1, 1, 16, 1, 16, 16, 1, 1));
+  EXPECT_EQ(raised.height_msl_m, raised_m);
+  EXPECT_EQ(raised.ground_msl_m(), ground_m);
 }
 
 /// The excess of a surface at a height above ground along the meridian of the mast.

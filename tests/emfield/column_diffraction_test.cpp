@@ -136,22 +136,24 @@ TEST(ColumnDiffraction, WithTerminalClutterIsThatOfTheCpu) {
 }
 
 TEST(ColumnDiffraction, OverClutterIsThatOfTheCpu) {
-  SeenField setup(propagation::PropagationModel::diffraction, 50e3, 15, 3e9);
-  const MadeTerrain woods(44.5, -71.5, 1.2, [&](double east_deg, double north_deg) {
-    const double ground_m = setup.terrain->heightMsl_m(43.9 + north_deg, -72.1 + east_deg);
-    return ground_m + (std::fmod(east_deg, 0.01) < 0.004 ? 20 : 0);
-  });
-  const scenario::TerrainView with_woods = woods.view();
-  setup.ground.terrain.surfaces = with_woods.rasters;
-  setup.ground.terrain.surface_count = 1;
-  setup.ground.is_raised = setup.ground.has_clutter = true;
-  EmitterExcess excess = planned(setup);
-  const std::vector<float> bare = lossesOfTheCpu(setup, excess);
-  excess.is_raised = excess.has_clutter = true;
-  const std::vector<float> cpu = lossesOfTheCpu(setup, excess);
-  EXPECT_NE(cpu, bare);
-  expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), cpu);
-  expectSameLosses(setup, lossesOfTheDevice<1>(setup, excess), cpu);
+  for (const double frequency_hz : {60e6, 3e9}) {
+    SeenField setup(propagation::PropagationModel::diffraction, 50e3, 15, frequency_hz);
+    const MadeTerrain woods(44.5, -71.5, 1.2, [&](double east_deg, double north_deg) {
+      const double ground_m = setup.terrain->heightMsl_m(43.9 + north_deg, -72.1 + east_deg);
+      return ground_m + (std::fmod(east_deg, 0.01) < 0.004 ? 20 : 0);
+    });
+    const scenario::TerrainView with_woods = woods.view();
+    setup.ground.terrain.surfaces = with_woods.rasters;
+    setup.ground.terrain.surface_count = 1;
+    setup.ground.is_raised = setup.ground.has_clutter = true;
+    EmitterExcess excess = planned(setup);
+    const std::vector<float> bare = lossesOfTheCpu(setup, excess);
+    excess.is_raised = excess.has_clutter = true;
+    const std::vector<float> cpu = lossesOfTheCpu(setup, excess);
+    EXPECT_NE(cpu, bare);
+    expectSameLosses(setup, lossesOfTheDevice<8>(setup, excess), cpu);
+    expectSameLosses(setup, lossesOfTheDevice<1>(setup, excess), cpu);
+  }
 }
 
 TEST(ColumnDiffraction, OfLeaningColumnsIsThatOfTheCpu) {
@@ -189,7 +191,7 @@ TEST(ColumnDiffraction, OfMoreCandidatesThanThereIsRoomForIsTheSame) {
     const FastInverse path = setup.grid.coordinatesOf(setup.station, c, 0);
     ColumnPosts posts(setup.station, setup.ground, path, true);
     const auto distance_m = static_cast<float>(path.distance_m);
-    diffraction_detail::CandidatePosts candidates;
+    diffraction_detail::CandidatePosts candidates(false);
     diffraction_detail::CandidatePosts::Records records(0);
     int kept = 0;
     posts.each([](float, float, float) { return false; },

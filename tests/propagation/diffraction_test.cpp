@@ -118,6 +118,27 @@ TEST(Diffraction, SmoothEarthGivesSphericalEarthLoss) {
   }
 }
 
+TEST(Diffraction, TallerTreesOverFlatGroundNeverLowerTheLoss) {
+  const ProfileData ground = flatProfile(13350, 535, 100);
+  for (const double frequency_hz : {60e6, 1e9, 5e9}) {
+    const auto model = diffractionModel<double>(parametersAt(frequency_hz));
+    for (const double antenna_msl_m : {102.0, 105.0, 130.0}) {
+      const double bare_db = deltaBullington(model, ground.view(), 105.0, antenna_msl_m).loss_db;
+      double before_db = bare_db;
+      for (const float trees_m : {0.0f, 1.0f, 3.0f, 6.0f, 10.0f, 15.0f, 22.0f, 30.0f, 45.0f}) {
+        ProfileData wood = ground;
+        for (int post = 200; post < 210; ++post) wood.height_msl_m[post] += trees_m;
+        TerrainProfile profile = wood.view();
+        profile.bare_msl_m = ground.height_msl_m.data();
+        const double loss_db = deltaBullington(model, profile, 105.0, antenna_msl_m).loss_db;
+        EXPECT_GE(loss_db, before_db - 1e-9) << frequency_hz << " Hz, " << trees_m << " m";
+        before_db = loss_db;
+      }
+      EXPECT_GT(before_db, bare_db + 3) << frequency_hz;
+    }
+  }
+}
+
 TEST(Diffraction, OverTheSeaDiffersOnlyInTheSphericalPart) {
   DiffractionParameters land = parametersAt(5e7), sea = land;
   land.polarization = sea.polarization = LinearPolarization::vertical;
