@@ -39,11 +39,6 @@ std::string withoutQuotes(const std::string& text) {
   return name;
 }
 
-std::string quotedIfNeeded(const std::string& name) {
-  const bool is_plain = !name.empty() && name.find_first_of(".\"=\\") == std::string::npos;
-  return is_plain ? name : quotedName(name);
-}
-
 const std::string* nameOf(const DocumentNode& item) {
   for (const MapEntry& entry : item.entries) {
     if (entry.key == "name" && entry.value->kind == NodeKind::scalar) return &entry.value->text;
@@ -165,7 +160,7 @@ class Resolver {
     }
     const std::string name = *nameOf(*items[best]);
     result_.name = fmt::format("the {} '{}'", spec.name, name);
-    append(quotedIfNeeded(name));
+    append(pathStep(name));
     advance(in_quotes ? word().size() : best_length);
     return best;
   }
@@ -185,7 +180,7 @@ class Resolver {
     if (name.empty() || at_ + length != path_.size()) fail(result_.missing);
     result_.name = fmt::format("the {} '{}'", spec.name, name);
     result_.new_name = name;
-    append(quotedIfNeeded(name));
+    append(pathStep(name));
     advance(length);
     return node_ ? node_->items.size() : 0;
   }
@@ -228,6 +223,11 @@ std::string quotedName(const std::string& name) {
     quoted += c;
   }
   return quoted + "\"";
+}
+
+std::string pathStep(const std::string& name) {
+  const bool is_plain = !name.empty() && name.find_first_of(".\"=\\") == std::string::npos;
+  return is_plain ? name : quotedName(name);
 }
 
 std::size_t endOfPath(const std::string& text) {

@@ -31,6 +31,8 @@ ResolvedPath resolvePath(const std::string& path, const DocumentNodePtr& root, c
 
 /// A name in double quotes, with \" and \\ for a quote and a backslash.
 std::string quotedName(const std::string& name);
+/// A name as a step of a path: in quotes if it has characters of the path's own.
+std::string pathStep(const std::string& name);
 
 /// The byte of the first '=' of "PATH=VALUE" outside quoted names; npos if there is none.
 std::size_t endOfPath(const std::string& text);

@@ -79,7 +79,7 @@ void addTerrain(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->footer(R"(
 Of each file: format, posts, coordinate system, vertical datum and its origin, unit, range, voids, and what was assumed, with its
 effect and how to state it. Of all: the ground that a scenario gets from them, above EGM96 mean sea level. With -o a picture: the
-shaded ground, coloured by file, with voids and ground that no file covers; with --land-cover by the classes of the land cover.
+shaded ground, coloured by height, with voids and ground that no file covers; with --land-cover by the classes of the land cover.
 
 Inputs are elevation files, folders and patterns of them, .zip and .gz (see docs/terrain.md), or one scenario: then the files
 that reach its area are read, with the scenario's keys.

@@ -30,7 +30,7 @@ struct MsiFile {
   std::string title;  ///< the first line that is no keyword, before the cuts
   std::optional<double> gain_dbi;
   bool is_gain_unit_assumed = false;
-  std::optional<double> tilt_deg;  ///< downwards
+  std::optional<double> electrical_tilt_deg, mechanical_tilt_deg;  ///< downwards
   std::optional<double> width_az_deg, width_el_deg;
   StatedBand band;
   std::vector<std::string> ignored;  ///< first words of lines that do not describe the pattern
@@ -67,8 +67,10 @@ class MsiReader {
       content_.band = *band;
     } else if (keyword == "TILT" || keyword == "ELECTRICAL_TILT" || keyword == "MECHANICAL_TILT") {
       // TILT often contains a word (ELECTRICAL, MECHANICAL) instead of an angle, or beside it.
+      const bool is_mechanical = upperCase(line.text).find("MECHANICAL") != std::string::npos;
       for (std::size_t i = 1; i < words.size(); ++i) {
-        if (const auto tilt_deg = numberOrCommaIn(words[i].text)) content_.tilt_deg = tilt_deg;
+        if (const auto tilt_deg = numberOrCommaIn(words[i].text))
+          (is_mechanical ? content_.mechanical_tilt_deg : content_.electrical_tilt_deg) = tilt_deg;
       }
     } else if (keyword == "H_WIDTH") {
       content_.width_az_deg = numberOrCommaIn(value.text);
@@ -234,11 +236,18 @@ PatternFile readMsiPattern(const std::string& file) {
   requireMaximum(smallestAttenuation_db(content.vertical), location, "VERTICAL cut");
   const MeasuredCut horizontal(AxisKind::circle, std::move(content.horizontal), location, "HORIZONTAL cut");
   const MeasuredCut vertical(AxisKind::circle, std::move(content.vertical), location, "VERTICAL cut");
-  if (content.tilt_deg && std::abs(peakAngle_deg(vertical) - *content.tilt_deg) > kTiltTolerance_deg) {
+  // A cut holds the electrical tilt; a mechanical one is that of the mounting, or is in the cut, too.
+  const double mechanical_deg = content.mechanical_tilt_deg.value_or(0);
+  const double tilt_deg = content.electrical_tilt_deg.value_or(mechanical_deg);
+  const auto isAt = [&](double angle_deg) {
+    return std::abs(peakAngle_deg(vertical) - angle_deg) <= kTiltTolerance_deg;
+  };
+  if (!isAt(tilt_deg) && !isAt(tilt_deg + mechanical_deg) &&
+      (content.electrical_tilt_deg || content.mechanical_tilt_deg)) {
     pattern.warnings.push_back(fmt::format(
         "{}: the file states {} deg of tilt, but its VERTICAL cut has its maximum at {} deg; the cut is "
         "used unchanged",
-        file, *content.tilt_deg, peakAngle_deg(vertical)));
+        file, tilt_deg, peakAngle_deg(vertical)));
   }
   noteIgnored(pattern, "lines", content.ignored);
   fillFromCuts(file, horizontal, vertical, pattern);

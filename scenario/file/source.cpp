@@ -209,8 +209,7 @@ Edit parseEdit(const std::string& text) {
 }
 
 std::string pathStep(const std::string& name) {
-  const bool is_plain = !name.empty() && name.find_first_of(".\"=\\") == std::string::npos;
-  return is_plain ? name : document::quotedName(name);
+  return document::pathStep(name);
 }
 
 std::string toString(const Edit& edit) {

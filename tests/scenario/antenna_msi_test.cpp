@@ -149,6 +149,9 @@ TEST(MsiAntenna, DoesNotApplyATiltThatTheCutHoldsAlready) {
     warnings += level == LogLevel::warning && message.find("6 deg of tilt") != std::string::npos;
   });
   readText(sector("GAIN 15 dBi\nTILT ELECTRICAL\nELECTRICAL_TILT 6\n", 6));
+  readText(sector("GAIN 15 dBi\nELECTRICAL_TILT 6\nMECHANICAL_TILT 0\n", 6));
+  readText(sector("GAIN 15 dBi\nTILT MECHANICAL 0\nTILT 6\n", 6));
+  readText(sector("GAIN 15 dBi\nELECTRICAL_TILT 4\nMECHANICAL_TILT 3\n", 7));
   EXPECT_EQ(warnings, 0);
   const AntennaPtr level = readText(sector("GAIN 15 dBi\nELECTRICAL_TILT 6\n", 0));
   EXPECT_EQ(warnings, 1);

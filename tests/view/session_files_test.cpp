@@ -309,6 +309,21 @@ TEST_F(Opener, WaitsForAnOpenDialogAndForTyping) {
   EXPECT_TRUE(shown_->panels.help) << "it does not belong to the input";
 }
 
+TEST_F(Opener, ReloadingKeepsTheNameOfSaveAsAndOpeningDoesNot) {
+  shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", ownScenario(folder_)));
+  ASSERT_TRUE(waitUntilOpened(shown_, opener_));
+  shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
+  ASSERT_TRUE(shown_.settle());
+  shown_.perform(fmt::format(R"({{"do":"save","file":"{}"}})", folder_ / "mine.yaml"));
+  ASSERT_TRUE(shown_.settle());
+  shown_.perform(R"({"do":"reload"})");
+  ASSERT_TRUE(waitUntilOpened(shown_, opener_));
+  EXPECT_EQ(shown_->document(), folder_ / "mine.yaml");
+  shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", folder_ / "own.yaml"));
+  ASSERT_TRUE(waitUntilOpened(shown_, opener_));
+  EXPECT_EQ(shown_->document(), folder_ / "own.yaml");
+}
+
 TEST_F(Opener, ReloadingKeepsTheSelection) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"select","path":"emitters.radar"})");

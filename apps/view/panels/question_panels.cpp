@@ -17,11 +17,12 @@ void drawEdits(const std::vector<scenario::Edit>& edits, const playback::Scenari
                render::Theme theme) {
   constexpr std::size_t kMaxLines = 6;
   if (!original) return;
-  const std::vector<std::string> texts = editTexts(*original, edits);
+  const std::size_t lines = std::min(edits.size(), kMaxLines);
+  const auto end = edits.begin() + static_cast<std::ptrdiff_t>(lines);
   ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(theme));
-  for (std::size_t i = 0; i < texts.size() && i < kMaxLines; ++i)
-    ImGui::BulletText("%s", drawable(texts[i]).c_str());
-  if (texts.size() > kMaxLines) ImGui::Text("and %zu more", texts.size() - kMaxLines);
+  for (const std::string& text : editTexts(*original, {edits.begin(), end}))
+    ImGui::BulletText("%s", drawable(text).c_str());
+  if (edits.size() > lines) ImGui::Text("and %zu more", edits.size() - lines);
   ImGui::PopStyleColor();
 }
 

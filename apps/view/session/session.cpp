@@ -93,12 +93,15 @@ bool Session::perform(const Command& command) {
   bool is_accepted = true;
   try {
     requireAllowed(command);
+    const std::string refusal = std::exchange(refused_, {});
+    const bool is_mended = refused_verb_ == command.verb && notice_.text == refusal;
     verb.run(*this, command);
-    if (std::exchange(refused_, {}) == command.verb && notice_.is_error) notice_ = {};
+    if (is_mended && notice_.text == refusal) notice_ = {};
   } catch (const Error& error) {
     is_accepted = false;
     tell(failureText(error), true);
-    refused_ = command.verb;
+    refused_ = notice_.text;
+    refused_verb_ = command.verb;
   }
   noteSteps();
   status_ = live_.status();

@@ -466,8 +466,8 @@ class Session {
   std::vector<std::string> model_warnings_;                          // ... joined
   double joined_at_s_ = -1e9;
   Notice notice_;
-  std::string refused_;  // verb of the last command, if it was refused
-  BackgroundJobs jobs_;  // destroyed first
+  std::string refused_, refused_verb_;  // notice and verb of the last command, if it was refused
+  BackgroundJobs jobs_;                 // destroyed first
 };
 
 /// A file of the input's name with another ending, in its folder.

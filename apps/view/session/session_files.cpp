@@ -137,7 +137,7 @@ void Session::takeOver(const Session& before) {
     panels.*panel = before.panels.*panel;
   if (options_.view.input != before.options_.view.input) return;
   selected_ = before.selected_;
-  if (options_.unsaved_edits) saved_as_ = before.saved_as_;  // they are taken along
+  if (!options_.offers_kept_view) saved_as_ = before.saved_as_;  // its view is taken along, with its edits
 }
 
 void Session::lookForKeptView() {

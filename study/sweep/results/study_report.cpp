@@ -160,7 +160,7 @@ class ReportWriter {
     report_.table(table);
     if (!at_sea.empty())
       report_.paragraph("The ground is at sea level, which may be water, at: " + at_sea +
-                        ". Candidates on land are named in a table ('candidates').");
+                        ". To search on land, name candidates there in a table ('candidates').");
     writeCandidates(file, m, chosen);
   }
 
