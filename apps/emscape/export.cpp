@@ -19,6 +19,7 @@
 #include "emscape/study/maps/coverage.h"
 #include "interop/export_scenario.h"
 #include "report/maps/map_options.h"
+#include "report/maps/output_files.h"
 #include "report/warnings.h"
 #include "study/files/czml.h"
 
@@ -109,6 +110,7 @@ void addOutlines(const ExportArguments& arguments, const std::shared_ptr<const s
 int writeRecording(const ExportArguments& arguments, const GlobalOptions& global) {
   const auto scenario =
       scenario::loadScenario(arguments.scenario, arguments.edits, scenario::ReadFor::chosen_times);
+  report::checkOutputs({{"--output", arguments.file}}, {}, {scenario}, true);
   if (!arguments.coverage.empty()) checkCoverage(arguments, *scenario);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const interop::ExportResult result = interop::exportScenario(scenario, terrain.get(), arguments.file,

@@ -57,6 +57,7 @@ int exposure(const ExposureCommand& command, const GlobalOptions& global) {
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
   report::checkOutputs(report::outputsOf("--output", command.outputs), {}, {scenario});
+  report::requireFolders(command.outputs);
   const study::ExposureRequest request = requestOf(command, *scenario);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const study::Exposure result = openOnTarget(global, "float", [&](const ComputeTarget& target) {

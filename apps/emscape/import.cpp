@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "apps/common/console.h"
@@ -13,6 +14,7 @@
 #include "interop/emitters/emitter_names.h"
 #include "interop/import_scenario.h"
 #include "recording/read_recording.h"
+#include "report/maps/output_files.h"
 #include "report/runs/import_report.h"
 
 namespace emscape::app {
@@ -53,11 +55,26 @@ void check(const std::string& file) {
   }
 }
 
+/// Checks that neither a recording nor another input is replaced.
+void checkOutput(const ImportArguments& arguments) {
+  const interop::ImportOptions& options = arguments.options;
+  std::vector<report::NamedFile> inputs{
+      {"the base", options.base}, {"the emitter database", options.emitters}, {"--names", arguments.names}};
+  for (const std::string& file : arguments.files) inputs.push_back({"the recording", file});
+  for (const std::string& file : options.terrain) inputs.push_back({"an elevation file", file});
+  std::vector<std::shared_ptr<const scenario::Scenario>> bases;
+  if (options.replace && std::filesystem::is_regular_file(options.base)) {
+    if (const auto base = scenario::parseScenario(options.base).scenario) bases.push_back(base);
+  }
+  report::checkOutputs({{"--output", options.scenario}}, inputs, bases, true);
+}
+
 int import(const ImportArguments& arguments, const GlobalOptions& global) {
   interop::ImportOptions options = arguments.options;
   if (arguments.region != "auto") options.region = interop::parseRegion(arguments.region);
   if (!arguments.times.empty()) options.times = parseSpan(arguments.times);
   options.beamwidth = parseName<interop::BeamwidthMeaning>("meaning of beamwidths", arguments.beamwidth);
+  checkOutput(arguments);
   if (!options.replace) requireNew({options.scenario});  // before the work
   const ProgressSink progress = stoppingProgress(global);
   interop::ReadOptions read = arguments.read;

@@ -31,6 +31,7 @@ int link(const LinkCommand& command, const GlobalOptions& global) {
   report::NamedLinks links{command.scenario, scenario::loadScenario(command.scenario, command.edits), {}};
   const scenario::Scenario& scenario = *links.scenario;
   report::checkOutputs({{"--csv", command.csv}, {"--plot", command.plot}}, {}, {links.scenario});
+  report::requireFolders({command.csv, command.plot});
   const emfield::LinkOptions options = report::linkOptions(scenario, command.selection);
   links.report = report::computeLinks(links.scenario, options, stoppingProgress(global));
   report::logWarnings(links.report.warnings, {links.scenario});

@@ -121,6 +121,7 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
   report::checkOutputs(report::outputsOf("--output", command.outputs), {}, {scenario});
+  report::requireFolders(command.outputs);
   const study::VerticalRequest request = requestOf(command, *scenario, other);
   const scenario::TerrainPtr terrain = study::loadVerticalTerrain(*scenario, request);
   stopIfInterrupted();

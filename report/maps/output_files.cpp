@@ -3,14 +3,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <string_view>
 #include <system_error>
 
+#include "base/files/descriptor.h"
 #include "base/files/file_reading.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/study/maps/products.h"
+#include "report/json.h"
 #include "study/sweep/results/study_folder.h"
 
 namespace emscape::report {
@@ -69,40 +72,74 @@ std::string endsOf(const fs::path& file) {
   return text;
 }
 
-/// True for a file of this program, and for an empty one.
-bool isOwn(const fs::path& file) {
-  const std::string text = endsOf(file), line = text.substr(0, text.find_first_of("\r\n"));
-  if (file.extension() == ".csv") {  // headers of studies, link, exposure and vertical
-    const auto begins = [&](const char* header) { return line.rfind(header, 0) == 0; };
-    constexpr std::string_view kLast = ",state,decides";
-    const bool ends = line.size() > kLast.size() && line.substr(line.size() - kLast.size()) == kLast;
-    return text.empty() || begins("variant,name,") || begins("kind,time_s,emitter,to,active,range_m,") ||
-           begins("kind,azimuth_deg,line,range_m,slant_range_m,elevation_deg,") ||
-           (ends && begins("time_s,latitude_deg,longitude_deg,height_msl_m,height_agl_m,"));
-  }
-  if (file.extension() == ".json") {
-    const nlohmann::json json = nlohmann::json::parse(readWholeText(file), nullptr, false);
-    if (!json.is_object()) return text.empty();
-    return json.contains("emscape") || (json.contains("schema_version") && json.contains("transfer")) ||
-           (json.contains("scenario") && json.contains("quantity") && json.contains("unit"));
-  }
-  if (file.extension() == ".geojson")  // the sites of a study
-    return text.empty() || text.find("\"chosen\":") != std::string::npos;
-  if (line.rfind("#!", 0) == 0) return text.find("\n#SBATCH --job-name=emscape-") != std::string::npos;
-  // Voxels alone, with a file beside them that says what they are.
-  if (file.extension() == ".raw" || file.extension() == ".nvdb")
-    return text.empty() || endsOf(file.string() + ".json").find("mscape") != std::string::npos;
-  if (file.extension() == ".svg") return text.empty() || text.find("<!-- Emscape -->") != std::string::npos;
-  if (file.extension() == ".png" && !text.empty() && text.rfind("\x89PNG", 0) != 0) return false;
-  return text.empty() || text.find("mscape") != std::string::npos;
+/// True for a record of this program: with its version.
+bool isOwnRecord(const Json& json) {
+  return json.is_object() && json.contains("emscape") && json["emscape"].is_string() &&
+         std::isdigit(static_cast<unsigned char>(json["emscape"].get<std::string>()[0])) != 0;
+}
+
+/// True for the sites of a study.
+bool areOwnSites(const Json& json) {
+  const auto isSite = [](const Json& feature) {
+    if (!feature.is_object()) return false;
+    const Json chosen = feature.value(Json::json_pointer("/properties/chosen"), Json("none"));
+    return chosen.is_null() || chosen.is_number_integer();
+  };
+  return json.value("type", Json()) == "FeatureCollection" && json.contains("name") &&
+         json.value("features", Json()).is_array() &&
+         std::all_of(json["features"].begin(), json["features"].end(), isSite);
+}
+
+bool isOwnJson(const fs::path& file) {
+  const Json json = Json::parse(readWholeText(file), nullptr, false);
+  if (!json.is_object()) return false;
+  return isOwnRecord(json) || areOwnSites(json) ||
+         (json.contains("schema_version") && json.contains("transfer")) ||  // a view
+         (json.contains("scenario") && json.contains("quantity") && json.contains("unit"));
 }
 
 /// True for a report that this program wrote.
 bool isOwnReport(const fs::path& file) {
   const std::string text = readWholeText(file);
-  if (file.extension() == ".html") return text.find("<p class=\"subtitle\">") != std::string::npos;
-  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  return json.is_object() && json.contains("emscape");
+  const auto contains = [&](const char* part) { return text.find(part) != std::string::npos; };
+  if (file.extension() == ".html")
+    return contains("<html lang=\"en\">") && contains("<p class=\"subtitle\">");
+  return isOwnRecord(Json::parse(text, nullptr, false));
+}
+
+/// True for the header of a table of `study`, `link`, `vertical` or `exposure`.
+bool isOwnHeader(const std::string& line) {
+  const auto begins = [&](std::string_view words) { return line.rfind(words, 0) == 0; };
+  const auto ends = [&](std::string_view words) {
+    return line.size() > words.size() && line.substr(line.size() - words.size()) == words;
+  };
+  // In the columns of a study paths of parameters, or units: "emitters.jammer.power_w,covered (km2)".
+  return (begins("variant,name,") && line.find_first_of(".(") != std::string::npos) ||
+         begins("kind,time_s,emitter,to,active,range_m,") ||
+         begins("kind,azimuth_deg,line,range_m,slant_range_m,elevation_deg,") ||
+         (begins("time_s,latitude_deg,longitude_deg,height_msl_m,height_agl_m,") && ends(",state,decides"));
+}
+
+/// True for a file of this program, by its content, and for an empty one.
+bool isOwn(const fs::path& file) {
+  const std::string text = endsOf(file);
+  const auto begins = [&](std::string_view words) { return text.rfind(words, 0) == 0; };
+  const auto contains = [&](std::string_view words) { return text.find(words) != std::string::npos; };
+  if (text.empty()) return true;
+  // Voxels alone, with a file beside them that says what they are.
+  if (file.extension() == ".raw" || file.extension() == ".nvdb")
+    return endsOf(file.string() + ".json").find("mscape") != std::string::npos;
+  if (begins("\x89PNG")) return contains(std::string_view("Software\0Emscape", 16));  // as writePng()
+  if (begins("{")) return isOwnJson(file);
+  if (begins("<!DOCTYPE html>")) return isOwnReport(file);
+  if (contains("<svg")) return contains("<!-- Emscape -->");
+  if (begins("#!")) {
+    return contains("\n#SBATCH --job-name=emscape-study\n") ||
+           contains("\n#SBATCH --job-name=emscape-merge\n");
+  }
+  if (isOwnHeader(text.substr(0, text.find_first_of("\r\n")))) return true;
+  // Films and volumes have the name between bytes that are no text, or in XML.
+  return (contains(std::string_view("\0", 1)) || begins("<?xml") || begins("<VTKFile")) && contains("mscape");
 }
 
 }  // namespace
@@ -134,6 +171,12 @@ void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<Named
     }
     if (!replaces_any && !isOwn(output.file))
       refuse(output, "a file that emscape did not write; give another name, or move it away first");
+  }
+}
+
+void requireFolders(const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    if (!file.empty()) openFolderOf(file);
   }
 }
 

@@ -21,14 +21,18 @@ struct NamedFile {
 std::vector<NamedFile> outputsOf(const std::string& option, const std::vector<std::string>& files);
 
 /// Checks that outputs are different, and none of the inputs. Files are the same if they have the same
-/// identity, or the same name if they do not exist. Files that this program did not write are not replaced:
-/// its pictures, films and volumes have its name, its tables and JSON files their keys.
+/// identity, or the same name if they do not exist. Files that this program did not write are not replaced,
+/// nor texts that only name it: pictures, films and volumes have its mark, tables their headers, JSON files
+/// their keys.
 /// @param scenarios     inputs, with the files that they name
 /// @param replaces_any  true: files that exist are the caller's business
 /// @throws Error (usage) that names the option and the file
 void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
                   const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
                   bool replaces_any = false);
+
+/// Before long work. @throws Error (other) that names the first file whose folder does not exist
+void requireFolders(const std::vector<std::string>& files);
 
 /// Checks the folder of a study. @param option  name of the folder, for messages  @param others  further
 /// outputs

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
+#include <tuple>
 
 #include "tests/apps/program.h"
 #include "tests/support/sanitizers.h"
@@ -147,6 +148,75 @@ TEST_F(Outputs, SLOW_ReplaceFilesOfEmscapeAndNoOthers) {
   }
   writeFile(folder_ / "x.png", "");
   EXPECT_EQ(run(commands[2]).status, 0) << "an empty file, as of mktemp";
+}
+
+TEST_F(Outputs, ThatOnlyNameEmscapeAreNotItsOwn) {
+  const std::string png("\x89PNG\r\n\x1a\n\0\0\0\x1btEXtTitle\0computed with Emscape", 46);
+  const Arguments study{"study",
+                        folder_.write("study.yaml",
+                                      "schema_version: 1\nscenario: quick.yaml\ntimes: "
+                                      "0\nsweep:\n  emitters.radar.power_w: {values: "
+                                      "[1, 2]}\nmeasures:\n  - {name: covered, "
+                                      "height: \"agl:300\"}\n"),
+                        "-o", folder_ / "st"};
+  const auto withScript = [&](const std::string& name) {
+    Arguments arguments = study;
+    arguments.insert(arguments.end(), {"--slurm", folder_ / name});
+    return arguments;
+  };
+  const auto exposure = [&](const std::string& name) {
+    return Arguments{"exposure", links_, "--platform", "drone", "--times", "0", "-o", folder_ / name};
+  };
+  const std::tuple<std::string, std::string, Arguments> cases[] = {
+      {"x.png", png, {"terrain", folder_ / "data/jacksboro.tif", "-o", folder_ / "x.png"}},
+      {"mine.yaml",
+       readFile(quick_) + "# emscape\n",
+       {"render", quick_, "--times", "0", "--save-state", folder_ / "mine.yaml"}},
+      {"job.sh", "#!/bin/bash\n#SBATCH --job-name=emscape-thesis\nemscape study s.yaml\n",
+       withScript("job.sh")},
+      {"notes.md", "How I ran emscape\n", withScript("notes.md")},
+      {"x.csv", "variant,name,conversion\nA,red button,3\n", exposure("x.csv")},
+      {"x.json", R"({"emscape":"settings of another tool"})", exposure("x.json")},
+      {"x.svg", "<svg><title>values of Emscape</title></svg>", exposure("x.svg")}};
+  for (const auto& [name, content, arguments] : cases) {
+    writeFile(folder_ / name, content);
+    EXPECT_THAT(errorOfRun(arguments, kUsage), HasSubstr("is a file that emscape did not write")) << name;
+    EXPECT_EQ(readFile(folder_ / name), content) << name;
+  }
+  for (const char* const own : {"own.csv", "own.json", "own"}) {
+    EXPECT_EQ(run(withScript(own)).status, 0) << own;
+    EXPECT_EQ(run(withScript(own)).status, 0) << own << " again";
+  }
+}
+
+TEST_F(Outputs, OfImportAndExportAreNotTheirInputs) {
+  ASSERT_EQ(run({"export", links_, "-o", folder_ / "r.acmi", "-q"}).status, 0);
+  const std::string recording = readFile(folder_ / "r.acmi");
+  const Arguments import{"import", folder_ / "r.acmi", "--base", quick_, "--force", "-o"};
+  const auto into = [&](const std::string& file) {
+    Arguments arguments = import;
+    arguments.push_back(file);
+    return arguments;
+  };
+  expectRefused(into(folder_ / "r.acmi"), "--output: " + (folder_ / "r.acmi") + " is the recording");
+  expectRefused(into(quick_), "--output: " + quick_ + " is the base");
+  EXPECT_EQ(readFile(folder_ / "r.acmi"), recording);
+  fs::create_symlink(folder_ / "data/drone.csv", folder_ / "o.czml");
+  expectRefused({"export", links_, "-o", folder_ / "o.czml", "--force"},
+                "--output: " + (folder_ / "o.czml") + " is a file that the scenario names");
+}
+
+TEST_F(Outputs, WithoutAFolderAreToldBeforeTheWork) {
+  for (const Arguments& arguments :
+       {Arguments{"exposure", links_, "--platform", "drone", "-o", folder_ / "none/x.csv"},
+        Arguments{"vertical", links_, "--emitter", "search radar", "--azimuth", "30", "-o",
+                  folder_ / "none/x.csv"},
+        Arguments{"link", links_, "--csv", folder_ / "none/x.csv"}}) {
+    EXPECT_THAT(errorOfRun(arguments, kOther),
+                AllOf(HasSubstr("cannot write: the folder " + (folder_ / "none") + " does not exist"),
+                      Not(HasSubstr("running on"))))
+        << "before the work";
+  }
 }
 
 TEST_F(Outputs, SLOW_ReplaceVolumesAndStatesOfEmscape) {

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 
 #include "base/files/json_writing.h"
+#include "emscape/base/error.h"
 
 namespace emscape::view {
 namespace {
@@ -35,6 +37,13 @@ SteadyClock::duration processAge() {
 EventLog::EventLog() : start_(SteadyClock::now() - processAge()) {}
 
 EventLog::EventLog(const std::string& file) : EventLog() {
+  std::string first;
+  if (std::filesystem::is_regular_file(file) && std::ifstream(file) >> first &&
+      first.rfind("{\"t_s\"", 0) != 0) {
+    throw Error(ErrorCode::usage, "--log: " + file +
+                                      " is a file that emscape did not write; give another name, or move it "
+                                      "away first");
+  }
   out_.emplace(file);
   out_->cut(0);
 }

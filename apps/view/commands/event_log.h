@@ -14,7 +14,7 @@ namespace emscape::view {
 class EventLog {
  public:
   EventLog();
-  /// @throws Error (other) if the file cannot be written
+  /// @throws Error (other) if the file cannot be written; (usage) if it is no log
   explicit EventLog(const std::string& file);
 
   bool open() const { return out_.has_value(); }
