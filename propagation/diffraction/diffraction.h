@@ -245,8 +245,8 @@ EMSCAPE_HD Real bullingtonNu(const DiffractionModel<Real>& model, const double* 
 }
 
 /// Loss of one path over a profile whose last post is below the receiver. Where the profile is raised by
-/// clutter, the smooth surface is that of the bare ground, as in P.1812-8 (Attachment 1 to Annex 1, section
-/// 5.6) and P.452-18: otherwise trees over flat ground would raise the antennas above it.
+/// clutter, the smooth surface is that of the bare ground, as in P.1812-8 (Attachment 1 to Annex 1) and
+/// P.452-18 (Attachment 2 to Annex 1): otherwise trees over flat ground would raise the antennas above it.
 /// @param tx_msl_m, rx_msl_m  of the antennas; see kDiffractionAboveGround
 /// @return 0 with a single post; all NaN over missing terrain (NaN)
 /// @accuracy float within 0.02 dB of double to 500 km, 20 MHz to 40 GHz
