@@ -18,6 +18,7 @@ namespace emscape::test {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace std::string_literals;
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
@@ -151,7 +152,7 @@ TEST_F(Outputs, SLOW_ReplaceFilesOfEmscapeAndNoOthers) {
 }
 
 TEST_F(Outputs, ThatOnlyNameEmscapeAreNotItsOwn) {
-  const std::string png("\x89PNG\r\n\x1a\n\0\0\0\x1btEXtTitle\0computed with Emscape", 46);
+  const std::string png = "\x89PNG\r\n\x1a\n\0\0\0\x1btEXtTitle\0computed with Emscape"s;
   const Arguments study{"study",
                         folder_.write("study.yaml",
                                       "schema_version: 1\nscenario: quick.yaml\ntimes: "
