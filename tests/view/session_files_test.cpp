@@ -319,6 +319,12 @@ TEST_F(Opener, ReloadingKeepsTheNameOfSaveAsAndOpeningDoesNot) {
   shown_.perform(R"({"do":"reload"})");
   ASSERT_TRUE(waitUntilOpened(shown_, opener_));
   EXPECT_EQ(shown_->document(), folder_ / "mine.yaml");
+  shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"600"})");
+  ASSERT_TRUE(shown_.settle());
+  shown_.perform(R"({"do":"save"})");
+  EXPECT_FALSE(shown_->panels.replace) << "this window has written it";
+  ASSERT_TRUE(shown_.settle());
+  EXPECT_THAT(readFile(folder_ / "mine.yaml"), HasSubstr("power_w: 600"));
   shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", folder_ / "own.yaml"));
   ASSERT_TRUE(waitUntilOpened(shown_, opener_));
   EXPECT_EQ(shown_->document(), folder_ / "own.yaml");

@@ -137,7 +137,9 @@ void Session::takeOver(const Session& before) {
     panels.*panel = before.panels.*panel;
   if (options_.view.input != before.options_.view.input) return;
   selected_ = before.selected_;
-  if (!options_.offers_kept_view) saved_as_ = before.saved_as_;  // its view is taken along, with its edits
+  if (options_.offers_kept_view) return;
+  saved_as_ = before.saved_as_;  // its view is taken along, with its edits
+  written_ = before.written_;
 }
 
 void Session::lookForKeptView() {
