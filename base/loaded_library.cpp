@@ -1,6 +1,7 @@
 #include "base/loaded_library.h"
 
 #include <dlfcn.h>
+#include <unistd.h>
 
 #include "emscape/base/error.h"
 
@@ -21,7 +22,10 @@ LoadedLibrary::LoadedLibrary(const std::vector<std::string>& files, const std::s
                                reason.find("Cannot allocate memory") != std::string::npos;
   throw Error(ErrorCode::other,
               "cannot load " + title + " (" + reason + "); " +
-                  (is_memory_short ? "a limit on memory is reached (ulimit -v, or of a container)" : remedy));
+                  (is_memory_short ? "a limit on memory is reached (ulimit -v, or of a container)"
+                   : ::access("/proc/self/exe", F_OK) != 0
+                       ? "libraries beside the program are found by /proc/self/exe, which is not there"
+                       : remedy));
 }
 
 void* LoadedLibrary::functionIfAny(const char* name) const {

@@ -1,5 +1,7 @@
 #include "base/worker.h"
 
+#include "base/threads.h"
+
 namespace emscape {
 
 Worker::~Worker() {
@@ -13,6 +15,7 @@ Worker::~Worker() {
 }
 
 void Worker::push(std::function<void()> job) {
+  if (max_waiting_ != std::numeric_limits<std::size_t>::max() && sparesThreads()) return job();
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait(lock, [this] { return failure_ || waiting_.size() < max_waiting_; });
   if (failure_) std::rethrow_exception(failure_);

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/text/unended_line.h"
+
 namespace emscape::document {
 
 /// A cell without surrounding blanks and quotes; a view of the reader's text.
@@ -34,6 +36,11 @@ class CsvReader {
   bool next(CsvRow& row);
   /// Lines read so far.
   int lines() const { return line_; }
+  /// unendedLineTextOf() the text, and its unendedLineWarning(). @param what  "a row"
+  std::string unendedText(const char* what) const { return unendedLineTextOf(text_, what); }
+  std::string unendedWarning(const std::string& file, const char* what) const {
+    return unendedLineWarning(file, text_, what);
+  }
 
  private:
   void split(std::string_view line, std::vector<CsvCell>& cells);

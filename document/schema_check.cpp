@@ -304,15 +304,23 @@ bool checkObject(const std::string& file, const DocumentNode& node, const Object
   return checker.sound();
 }
 
+std::string errorsText(const std::vector<Problem>& problems) {
+  constexpr std::size_t kTold = 20;
+  std::string text;
+  std::size_t errors = 0;
+  for (const Problem& problem : problems) {
+    if (problem.severity == Severity::warning || ++errors > kTold) continue;
+    text += (text.empty() ? "" : "\n") + toString(problem.location) + ": " + problem.message;
+  }
+  if (errors > kTold) text += fmt::format("\n{} further errors are not told", errors - kTold);
+  return text;
+}
+
 void requireNoProblem(const ProblemList& problems) {
   const std::vector<Problem> all = problems.inOrder();
   if (all.empty()) return;
   if (all.size() == 1) throw Error(ErrorCode::bad_input, all.front().location, all.front().message);
-  std::string text;
-  for (const Problem& problem : all) {
-    text += (text.empty() ? "" : "\n") + toString(problem.location) + ": " + problem.message;
-  }
-  throw Error(ErrorCode::bad_input, text);
+  throw Error(ErrorCode::bad_input, errorsText(all));
 }
 
 std::optional<bool> booleanOf(const std::string& text) {

@@ -21,6 +21,10 @@ bool checkObject(const std::string& file, const DocumentNode& node, const Object
 /// Infinity and NaN are numbers here.
 std::optional<double> numberOf(const std::string& text);
 
+/// The errors of `problems`, one to a line; of more than 20 the first ones and how many further ones there
+/// are.
+std::string errorsText(const std::vector<Problem>& problems);
+
 /// @throws Error (bad_input) if there is any problem: a single one with its location, several as one message
 /// with one line each
 void requireNoProblem(const ProblemList& problems);

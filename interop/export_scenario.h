@@ -1,6 +1,7 @@
 /// Writes a scenario as a recording for other programs.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@ namespace emscape::interop {
 struct ExportOptions {
   double step_s = 0;     ///< largest time between positions of a moving platform; 0: 1 s
   bool replace = false;  ///< files that exist; else they are an error
+  /// Further packets of CZML, each after ",\n"; asked for before the first file is written.
+  std::function<std::string()> czml_packets;
 };
 
 struct ExportResult {

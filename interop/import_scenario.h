@@ -50,6 +50,9 @@ struct ImportOptions {
   std::vector<std::string> only;  ///< patterns of names and types of objects; empty: see importRecording()
   BeamwidthMeaning beamwidth = BeamwidthMeaning::by_size;
   bool replace = false;  ///< files that exist; else they are an error
+  /// A recording without any emitter gets one that is switched off, on its first platform, since a scenario
+  /// has at least one; false: an error.
+  bool adds_silent_emitter = false;
 };
 
 /// Objects of one type.
@@ -88,6 +91,7 @@ struct ImportResult {
   std::vector<ImportedEmitters> emitters;
   std::vector<ImportedPlatform> platforms;  ///< in the order of the recording
   std::vector<std::string> moved;           ///< platforms of the base whose place or track is the recording's
+  std::string silent_emitter;               ///< ImportOptions::adds_silent_emitter; empty: none was added
   std::map<std::string, int> left_out;      ///< objects, by reason
   ReadingTally tally;
   std::vector<std::string> notes;  ///< assumptions of the conversion, each with its effect
@@ -98,8 +102,8 @@ struct ImportResult {
 /// Emitters are the recording's beams with what the database has on them; an object without beams has the
 /// emitter of the first row that matches it. An object with the name of a platform of the base moves that
 /// platform, which gets those emitters only of whose kind it has none.
-/// @throws Error (bad_input): no object or emitter is left, a fault in the database or the base; (usage): a
-/// file exists; (other): a file cannot be written
+/// @throws Error (bad_input): no object, or no emitter is left, a fault in the database or the base; (usage):
+/// a file exists; (other): a file cannot be written
 ImportResult importRecording(const Recording& recording, const ImportOptions& options,
                              const ProgressSink& progress = {});
 

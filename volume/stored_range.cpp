@@ -31,7 +31,8 @@ void setRangeInSidecar(const fs::path& path, const std::vector<StoredRange>& ran
     (*description)["range_min"] = numberToJson(range.min);
     (*description)["range_max"] = numberToJson(range.max);
   }
-  writeWhole(sidecar, [&](std::ostream& stream) { stream << dumpJson(document, 2) << '\n'; });
+  writeWhole(
+      sidecar, [&](std::ostream& stream) { stream << dumpJson(document, 2) << '\n'; }, Replaces::any);
 }
 
 bool describes(const Json& json, const std::string& quantity) {

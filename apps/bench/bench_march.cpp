@@ -15,6 +15,7 @@
 #include "apps/common/target.h"
 #include "base/stopwatch.h"
 #include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
 #include "propagation/parabolic_equation/march/march_timing.h"
 
 namespace emscape::app {
@@ -161,7 +162,10 @@ int benchMarch(const BenchMarchOptions& options, const GlobalOptions& global) {
   const std::string device = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     on_gpu = target.onGpu();
     times.clear();
-    for (const MarchCase& one : cases) times.push_back(timesOf(one, options.repeats, on_gpu));
+    for (const MarchCase& one : cases) {
+      const WorkPart part(one.what, 0, 0);
+      times.push_back(timesOf(one, options.repeats, on_gpu));
+    }
     return target.device();
   });
   if (global.json) {

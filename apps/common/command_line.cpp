@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <new>
 #include <sstream>
 #include <string>
@@ -15,8 +16,10 @@
 #include "base/geodesy/gdal_environment.h"
 #include "base/limits/address_limit.h"
 #include "base/text/failure_text.h"
+#include "base/threads.h"
 #include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
+#include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
 
 namespace emscape::app {
@@ -127,6 +130,22 @@ int parseAndReport(CLI::App& app, std::vector<std::string> words) {
   }
 }
 
+/// Where few threads can be started, loops run on one, and the others are left to those that need them.
+/// @param wanted  threads of loops; 0: one per core
+/// @return false where few can be started
+bool allowThreads(int wanted) {
+  // OpenVDB has four threads, Pango for a moment as many; others write files and show the progress.
+  constexpr int kFurther = 8;
+  setThreadLimit(wanted);
+  const int count = threadCount() - 1 + kFurther;
+  // Stacks of threads that have ended stay in the address space for a while.
+  if (hasAddressLimit() || startableThreads(count) == count) return true;
+  logInfo("few threads can be started (ulimit -u, or the limit of a container): computing on one");
+  spareThreads();
+  setThreadLimit(1);
+  return false;
+}
+
 }  // namespace
 
 struct CommandLine::Impl {
@@ -179,12 +198,12 @@ int runCommandLine(const std::vector<std::string>& words, const AddSubcommands& 
         if (const int status = parseAndReport(parsed.app, {words.rbegin(), words.rend()}); status >= 0)
           return status;
         installLog(parsed.global);
-        setThreadLimit(parsed.global.threads);
+        const bool has_threads = allowThreads(parsed.global.threads);
         setDeviceLimit(parsed.global.devices);
         handleSignals();
         Work work(&stopFlag());  // a signal stops the loops of every subcommand
         const WorkScope scope(&work);
-        const WorkLine shown(parsed.global, work);
+        const auto shown = has_threads ? std::make_unique<const WorkLine>(parsed.global, work) : nullptr;
         return parsed.action();
       },
       app);

@@ -1,6 +1,7 @@
 #include "apps/common/console.h"
 
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -27,6 +28,26 @@ std::string progress_line;  // its first part, of a Progress
 /// The text that erases the progress line.
 std::string clearLine() {
   return shown_line.empty() ? "" : "\r\033[K";
+}
+
+/// The beginning of a line that fits on the terminal: only one row of it could be erased.
+std::string fitted(const std::string& line) {
+  winsize size{};
+  const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  const auto isFollowingByte = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };
+  std::size_t left = is_known ? size.ws_col - 1U : 79, end = 0;  // in characters
+  for (; end < line.size(); ++end) {
+    if (isFollowingByte(line[end])) continue;
+    if (left-- == 0) break;
+  }
+  return line.substr(0, end);
+}
+
+/// Shows a line in place of the one on the screen. To be called with the console's mutex.
+void showLine(const std::string& line) {
+  const std::string clear = clearLine();
+  shown_line = fitted(line);
+  writeMessage(clear + shown_line);
 }
 
 [[noreturn]] void failWriting(int error_number) {
@@ -114,11 +135,9 @@ void Progress::show(double fraction) {
   if (on_terminal_) {
     constexpr int kWidth = 30;
     const int filled = static_cast<int>(fraction * kWidth);
-    const std::string clear = clearLine();
-    shown_line = fmt::format("{} [{:#<{}}{:.<{}}] {:.0f} % {}", task_, "", filled, "", kWidth - filled,
-                             100 * fraction, left);
-    progress_line = shown_line;
-    writeMessage(clear + shown_line);
+    progress_line = fmt::format("{} [{:#<{}}{:.<{}}] {:.0f} % {}", task_, "", filled, "", kWidth - filled,
+                                100 * fraction, left);
+    showLine(progress_line);
     return;
   }
   if (fraction <= 0 || fraction >= 1 || now - reported_ < kProgressInterval) return;
@@ -148,7 +167,11 @@ WorkLine::~WorkLine() {
 }
 
 void WorkLine::follow(const Work& work) {
+  using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kInterval(500);
+  constexpr int kTold_s = 2;  // a state that lasts this long is shown with its duration
+  std::string state;
+  Clock::time_point since = Clock::now();
   std::unique_lock<std::mutex> waiting(mutex_);
   while (!ended_.wait_for(waiting, kInterval, [this] { return has_ended_; })) {
     const WorkProgress progress = work.progress();
@@ -157,10 +180,11 @@ void WorkLine::follow(const Work& work) {
       line += fmt::format(": {:.0f} %", 100 * progress.fraction);
     const std::lock_guard<std::mutex> lock(console_mutex);
     if (!progress_line.empty()) line = progress_line + (line.empty() ? "" : "  ") + line;
-    if (line == shown_line) continue;
-    const std::string clear = clearLine();
-    shown_line = line;
-    writeMessage(clear + shown_line);
+    if (line != state) since = Clock::now();
+    state = line;
+    const auto lasted_s = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - since).count();
+    if (!line.empty() && lasted_s >= kTold_s) line += fmt::format("  ({} s)", lasted_s);
+    if (fitted(line) != shown_line) showLine(line);
   }
 }
 

@@ -67,8 +67,8 @@ class Progress {
   Clock::time_point reported_;  // time of the last line that is not rewritten
 };
 
-/// While it exists, shows on a terminal which part of a piece of work takes its time, beside the progress.
-/// Silent with --quiet.
+/// While it exists, shows on a terminal which part of a piece of work takes its time, and for how long,
+/// beside the progress. Silent with --quiet.
 class WorkLine {
  public:
   /// @param work  must outlive this

@@ -79,8 +79,12 @@ void ignoreFurtherSignals() {
   ignores_further = 1;
 }
 
-void endAtInterrupts() {
+EndAtInterrupts::EndAtInterrupts() {
   ends_at_once = 1;
+}
+
+EndAtInterrupts::~EndAtInterrupts() {
+  ends_at_once = 0;
 }
 
 const StopFlag& stopFlag() {

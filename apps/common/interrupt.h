@@ -14,9 +14,16 @@ void handleSignals();
 /// For processes that another one of this program ends: a signal to the group of both comes from both.
 void ignoreFurtherSignals();
 
-/// For commands that write no files and may spend a long time in a library's reader: from now on the first
-/// signal that handleSignals() catches ends the program at once, with status 128 + N.
-void endAtInterrupts();
+/// For commands that may spend a long time in a library's reader: while an object exists, and no file is
+/// being written, the first signal that handleSignals() catches ends the program at once, with status 128 +
+/// N.
+class EndAtInterrupts {
+ public:
+  EndAtInterrupts();
+  ~EndAtInterrupts();
+  EndAtInterrupts(const EndAtInterrupts&) = delete;
+  EndAtInterrupts& operator=(const EndAtInterrupts&) = delete;
+};
 
 /// Is set when the user stops the program.
 const StopFlag& stopFlag();

@@ -66,6 +66,7 @@ playback::StreamRequest StreamOptions::parse() const {
   }
   parsed.connects = !acmi.empty() || is_tcp;
   parsed.address = playback::parseAddress(address, option);
+  if (!interface.empty()) playback::requireMulticast(parsed.address, "--interface");
   parsed.interface = playback::parseHost(interface.empty() ? playback::kLoopback : interface, "--interface");
   if (parsed.connects && parsed.address.isMulticast())
     throw Error(ErrorCode::usage, fmt::format("{} {}: TCP has no multicast groups", option, address));

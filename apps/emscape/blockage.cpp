@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
@@ -86,10 +87,11 @@ std::string blockageText(const Blockage& blockage, const BlockageAreas& areas) {
 }
 
 int blockage(BlockageCommand command, const GlobalOptions& global) {
-  endAtInterrupts();
+  std::optional<EndAtInterrupts> at_once(std::in_place);
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
   report::checkOutputs(report::outputsOf("--output", command.outputs), {}, {scenario}, true);
+  report::requireFolders(command.outputs);
   if (!command.force) requireNew({command.outputs.begin(), command.outputs.end()});
   BlockageRequest& request = command.request;
   request.emitter =
@@ -99,21 +101,24 @@ int blockage(BlockageCommand command, const GlobalOptions& global) {
   if (!std::isnan(command.beamwidth_deg)) request.beamwidth_deg = command.beamwidth_deg;
   const Blockage blockage = study::computeBlockage(scenario, request);
   report::logWarnings(blockage.warnings, {scenario});
+  at_once.reset();
+  const Replaces replaces = command.force ? Replaces::any : Replaces::own;
   for (const std::string& file : command.outputs) {
     const std::string ending = std::filesystem::path(file).extension();
     if (ending == ".png") {
       render::writePng(file, study::drawBlockage(blockage, command.width));
     } else if (ending == ".csv") {
-      study::writeBlockageCsv(blockage, file);
+      study::writeBlockageCsv(blockage, file, replaces);
     } else if (ending == ".nc") {
-      study::writeBlockageNetcdf(blockage, file);
+      study::writeBlockageNetcdf(blockage, file, replaces);
     } else {
       const study::BlockageMap made = study::mapOf(blockage);
       study::writeGeoTiff(file, made.grid, made.map,
                           {{"SCENARIO", blockage.scenario},
                            {"EMITTER", blockage.emitter},
                            {"ELEVATION_DEG", fmt::format("{:g}", blockage.elevation_deg)},
-                           {"BEAMWIDTH_DEG", fmt::format("{:g}", blockage.beamwidth_deg)}});
+                           {"BEAMWIDTH_DEG", fmt::format("{:g}", blockage.beamwidth_deg)}},
+                          replaces);
     }
     logInfo("wrote " + file);
   }

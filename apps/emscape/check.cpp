@@ -37,7 +37,7 @@ struct CheckOptions {
 };
 
 int checkFigures(const std::string& folder, const GlobalOptions& global) {
-  const report::CheckReport report = report::checkReport(folder, stopIfInterrupted);
+  const report::CheckReport report = report::checkReport(folder, stoppingProgress(global));
   if (global.json) {
     printJson(report::toJson(report));
   } else {

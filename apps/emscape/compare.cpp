@@ -143,8 +143,9 @@ int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
 
   std::set<double> times_s;
   std::vector<study::MapHeight> heights;
+  std::vector<study::CoverageMap> compared;
   for (const auto& [of_a, of_b] : pairs) {
-    const study::CoverageMap& map = a.maps[of_a];
+    const study::CoverageMap& map = compared.emplace_back(a.maps[of_a]);
     if (map.height) heights.push_back(*map.height);
     if (map.time_s) times_s.insert(*map.time_s);
   }
@@ -162,6 +163,7 @@ int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
                            heights,
                            command.maps.view},
                           command.maps.formats);
+  report::requireReplaceable(folder, compared);
   if (!global.json) printHeading(command.a, command.b, *a.grid, a.quantity, a.threshold);
   if (!global.json) printClutter(emfield::clutterText(*a.scenario), emfield::clutterText(*b.scenario));
   const study::Comparison comparison = study::compareFolders(

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "apps/common/console.h"
@@ -17,6 +18,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "report/maps/output_files.h"
 #include "report/warnings.h"
+#include "study/maps/surface_maps.h"
 #include "study/report/map_folder.h"
 
 namespace emscape::app {
@@ -30,19 +32,34 @@ struct CoverageCommand {
   ViewArguments view;
 };
 
+/// The area of a map of yes and no; of one with more classes those of all but the first, largest first.
+std::string areaText(const study::Map& map, const study::MapSummary& summary) {
+  const double known_m2 = summary.known_area_m2;
+  if (!(known_m2 > 0)) return "nothing known";
+  if (map.labels.size() <= 2)
+    return fmt::format("{:.1f} of {:.1f} km2 known, {:.1f} %", summary.class_area_m2 / 1e6, known_m2 / 1e6,
+                       100 * summary.class_area_m2 / known_m2);
+  std::vector<std::size_t> classes;
+  for (std::size_t n = 1; n < map.labels.size(); ++n) {
+    if (summary.label_areas_m2[n] > 0) classes.push_back(n);
+  }
+  std::sort(classes.begin(), classes.end(), [&](std::size_t a, std::size_t b) {
+    return summary.label_areas_m2[a] > summary.label_areas_m2[b];
+  });
+  std::string areas;
+  for (const std::size_t n : classes)
+    areas +=
+        fmt::format("{}{} {:.1f}", areas.empty() ? "" : ", ", map.labels[n], summary.label_areas_m2[n] / 1e6);
+  return fmt::format("{} of {:.1f} km2 known", areas.empty() ? "none" : areas, known_m2 / 1e6);
+}
+
 void printRow(const study::MapRecord& record) {
   const study::Map& map = record.map;
   const study::MapSummary& summary = record.summary;
   const std::string time = map.time_s ? fmt::format("{} s", *map.time_s) : "all";
-  std::string area;
-  if (map.area_class >= 0) {
-    const double known_m2 = summary.known_area_m2;
-    area = known_m2 > 0 ? fmt::format("{:.1f} of {:.1f} km2 known, {:.1f} %", summary.class_area_m2 / 1e6,
-                                      known_m2 / 1e6, 100 * summary.class_area_m2 / known_m2)
-                        : std::string("nothing known");
-    if (summary.unknown_area_m2 > 0)
-      area += fmt::format("; {:.1f} km2 unknown", summary.unknown_area_m2 / 1e6);
-  }
+  std::string area = map.area_class >= 0 ? areaText(map, summary) : "";
+  if (map.area_class >= 0 && summary.unknown_area_m2 > 0)
+    area += fmt::format("; {:.1f} km2 unknown", summary.unknown_area_m2 / 1e6);
   print("  {:<16} {:<26} {:>8}  {:<28} {}\n", map.name, map.height ? study::describe(*map.height) : "", time,
         area, record.files.empty() ? "" : record.files.front());
 }
@@ -70,6 +87,9 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
                            request.heights,
                            command.maps.view},
                           command.maps.formats);
+  std::vector<std::string> names;
+  for (const study::CoverageMap& map : study::outlinesOf(request)) names.push_back(fileNameOf(map));
+  folder.requireReplaceable(names);
   if (!global.json) {
     const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
     print("Coverage of {}: {} x {} pixels of {} m in {}, {}{}\n", scenario->name, grid->width, grid->height,

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <ostream>
+#include <string>
 
 #include "apps/common/console.h"
 #include "apps/common/target.h"
@@ -13,7 +13,6 @@
 #include "base/files/file_reading.h"
 #include "base/files/json_writing.h"
 #include "base/files/unfinished_file.h"
-#include "base/files/whole_file.h"
 #include "base/text/count_text.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/study/maps/coverage.h"
@@ -64,9 +63,10 @@ void checkCoverage(const ExportArguments& arguments, const scenario::Scenario& s
   study::checkRequest(report::requestOf(outlineOptions(arguments, scenario), scenario.clock), scenario);
 }
 
-/// Adds the outlines of what the radars detect to a CZML document.
-void addOutlines(const ExportArguments& arguments, const std::shared_ptr<const scenario::Scenario>& scenario,
-                 const GlobalOptions& global) {
+/// The outlines of what the radars detect, as packets of CZML, each after ",\n".
+std::string outlinePackets(const ExportArguments& arguments,
+                           const std::shared_ptr<const scenario::Scenario>& scenario,
+                           const GlobalOptions& global) {
   const report::MapOptions options = outlineOptions(arguments, *scenario);
   const study::CoverageRequest request = report::requestOf(options, scenario->clock);
   const study::MapArea area = report::areaOf(options, *scenario);
@@ -82,7 +82,7 @@ void addOutlines(const ExportArguments& arguments, const std::shared_ptr<const s
   study.threshold = request.threshold;
   study.times_s = request.times_s;
   study.heights = request.heights;
-  const UnfinishedFile scratch(arguments.file + ".coverage.czml");  // removed at the end
+  const UnfinishedFile scratch(arguments.file, Replaces::any);  // never published
   const auto outlines = study::makeCzml(scratch.temporary(), study);
   const std::vector<std::string> warnings = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     return study::computeCoverage(
@@ -91,31 +91,27 @@ void addOutlines(const ExportArguments& arguments, const std::shared_ptr<const s
   });
   report::logWarnings(warnings, {scenario});
   outlines->finish();
-  Json packets = Json::parse(readWholeText(arguments.file, kMaxOutlineBytes));
-  for (Json& packet : Json::parse(readWholeText(scratch.temporary(), kMaxOutlineBytes))) {
-    // Its document, tracks and emitters are there.
+  std::string packets;
+  for (const Json& packet : Json::parse(readWholeText(scratch.temporary(), kMaxOutlineBytes))) {
+    // Its document, tracks and emitters are those of the recording.
     if (packet.contains("polygon") || packet["id"].get<std::string>().rfind("group/", 0) == 0)
-      packets.push_back(std::move(packet));
+      packets += ",\n" + dumpJson(packet);
   }
-  writeWhole(arguments.file, [&](std::ostream& out) {
-    const char* before = "[\n";
-    for (const Json& packet : packets) {
-      out << before << dumpJson(packet);
-      before = ",\n";
-    }
-    out << "\n]\n";
-  });
+  return packets;
 }
 
-int writeRecording(const ExportArguments& arguments, const GlobalOptions& global) {
+int writeRecording(ExportArguments& arguments, const GlobalOptions& global) {
   const auto scenario =
       scenario::loadScenario(arguments.scenario, arguments.edits, scenario::ReadFor::chosen_times);
   report::checkOutputs({{"--output", arguments.file}}, {}, {scenario}, true);
-  if (!arguments.coverage.empty()) checkCoverage(arguments, *scenario);
+  report::requireFolders({arguments.file});
+  if (!arguments.coverage.empty()) {
+    checkCoverage(arguments, *scenario);
+    arguments.options.czml_packets = [&] { return outlinePackets(arguments, scenario, global); };
+  }
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const interop::ExportResult result = interop::exportScenario(scenario, terrain.get(), arguments.file,
                                                                arguments.options, stoppingProgress(global));
-  if (!arguments.coverage.empty()) addOutlines(arguments, scenario, global);
   if (global.json) {
     printJson({{"file", result.file},
                {"format", result.format},

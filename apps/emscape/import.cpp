@@ -67,6 +67,7 @@ void checkOutput(const ImportArguments& arguments) {
     if (const auto base = scenario::parseScenario(options.base).scenario) bases.push_back(base);
   }
   report::checkOutputs({{"--output", options.scenario}}, inputs, bases, true);
+  report::requireFolders({options.scenario});
 }
 
 int import(const ImportArguments& arguments, const GlobalOptions& global) {

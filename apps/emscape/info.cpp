@@ -376,9 +376,11 @@ struct InfoOptions {
 };
 
 int info(const InfoOptions& options, const GlobalOptions& global) {
-  if (options.plot.empty()) endAtInterrupts();
   report::checkOutputs({{"--plot", options.plot}}, {{"the input", options.file}}, {});
-  const Description description = describe(options.file);
+  const Description description = [&] {
+    const EndAtInterrupts at_once;
+    return describe(options.file);
+  }();
   if (!options.plot.empty()) {
     const render::ImageSize size = render::parseImageSize(options.size);
     if (description.antenna) {

@@ -25,6 +25,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/volume/format/file.h"
 #include "playback/frames/busy_field.h"
+#include "playback/stream/live_scenario.h"
 #include "playback/stream/steady_time.h"
 #include "volume/format/vdb.h"
 
@@ -111,7 +112,7 @@ class LiveField {
     }
     std::string failure;
     try {
-      volume::writeVolumes(folder / "live.vdb", volumes);
+      volume::writeVolumes(folder / playback::kLiveField, volumes);
       is_new_ = false;
     } catch (const Error& error) {
       failure = error.what();
@@ -289,7 +290,7 @@ Examples:
   emscape live --cot tcp:10.0.0.9:8087 --base region.yaml
   emscape live --acmi 10.0.0.7:42674 --base region.yaml -o now --duration 3600 --json
 
-Exit status: 0, also when Ctrl-C ends it; 2 for wrong options; 3 for a faulty base or database; 1 if the address cannot be used, or the last
+Exit status: 0, also when Ctrl-C ends it, but 130 before it receives; 2 for wrong options; 3 for a faulty base or database; 1 if the address cannot be used, or the last
 field or the recording could not be written.)");
   auto arguments = std::make_shared<LiveArguments>();
   arguments->stream.addTo(*command, "--base", "--emitters,--emitter-database");

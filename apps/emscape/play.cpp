@@ -83,6 +83,12 @@ struct Played {
   }
 };
 
+/// @throws Error (usage) for options of multicast with another address
+void checkMulticast(const PlayArguments& arguments, const playback::Address& address) {
+  if (!arguments.interface.empty()) playback::requireMulticast(address, "--interface");
+  if (arguments.ttl > 0) playback::requireMulticast(address, "--ttl");
+}
+
 /// Sends datagrams at their times.
 class PacedSender {
  public:
@@ -93,7 +99,9 @@ class PacedSender {
                                     "--interface"),
                 arguments.ttl),
         pace_(arguments.rate,
-              [](double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }) {}
+              [](double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }) {
+    checkMulticast(arguments, address_);
+  }
 
   void waitFor(double t_s) { pace_.waitFor(t_s); }
   void send(const void* bytes, std::size_t size) {
@@ -182,6 +190,7 @@ int playAcmi(const PlayArguments& arguments, const GlobalOptions& global) {
   const playback::Address address = playback::parseAddress(arguments.acmi_server, "--acmi-server");
   if (address.isMulticast())
     throw Error(ErrorCode::usage, "--acmi-server " + arguments.acmi_server + ": TCP has no multicast groups");
+  checkMulticast(arguments, address);
   // What is wrong is told before a client is waited for.
   std::optional<Played> played;
   std::unique_ptr<interop::ByteSource> source;

@@ -19,6 +19,7 @@
 #include "base/worker.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
+#include "emscape/base/work.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "emscape/playback/frames/inputs.h"
 #include "emscape/playback/pictures/painter.h"
@@ -69,7 +70,8 @@ struct RenderOptions {
 
 /// @throws Error (other) for pictures that do not fit into memory
 void requireMemoryOf(const render::ImageSize& size) {
-  constexpr std::size_t kBytesPerPixel = sizeof(render::Rgba) + 4;  // cast and of 8 bits
+  // Cast; its ground: distance, colour and kind; with annotations, and of 8 bits.
+  constexpr std::size_t kBytesPerPixel = 2 * sizeof(render::Rgba) + 5 + 4 + 4;
   requireMemory({fmt::format("a picture of {}x{} pixels", size.width, size.height),
                  static_cast<std::size_t>(size.count()) * kBytesPerPixel, "a smaller --size takes less"},
                 {});
@@ -84,6 +86,7 @@ ViewState viewOf(const RenderOptions& options) {
   playback::addOwnScenario(view);
   view.edits.insert(view.edits.end(), options.edits.begin(), options.edits.end());
   requireMemoryOf(view.size);
+  playback::requireMapFiles(view);
   return view;
 }
 
@@ -372,8 +375,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   const Stage stage = openStage(view, options, global);
   saveState(options, view, stage);
   const std::unique_ptr<FrameSource>& source = stage.source;
-  constexpr int kSeveral = 2;
-  const Sinks sinks = openSinks(options, view, *source, kSeveral, loop_options.frames_per_s);
+  const Sinks sinks = openSinks(options, view, *source, playback::kAnyNumber, loop_options.frames_per_s);
 
   // Enough for delays of the encoder.
   constexpr long long kWaitingBytes = 256LL << 20;
@@ -382,7 +384,8 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   Display display;
   if (!sinks.empty()) {
     display = [&](const render::Image8& picture, int slots) {
-      writer.push([&sinks, picture, slots, n = ++number] {
+      writer.push([&sinks, picture, slots, n = ++number, work = currentWork()] {
+        const WorkScope scope(work);
         for (const auto& sink : sinks) sink->add(n, picture, slots);
       });
     };

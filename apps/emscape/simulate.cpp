@@ -12,8 +12,10 @@
 #include "apps/common/interrupt.h"
 #include "apps/common/target.h"
 #include "apps/emscape/subcommands.h"
+#include "base/files/folder.h"
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
+#include "emscape/base/work.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "emscape/playback/series/series_writer.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -82,6 +84,7 @@ void checkQuantities(const SimulateOptions& options) {
 
 /// @throws Error (usage) if the folder contains a series and neither --resume nor --overwrite is given
 void checkFolderIsFree(const SimulateOptions& options) {
+  requireNoFileIn(options.folder);
   if (options.resume || options.force) return;
   if (const std::optional<playback::SeriesStatus> found = playback::findSeries(options.folder)) {
     throw Error(ErrorCode::usage,
@@ -109,6 +112,7 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
                                           ? scenario::timesOf(input.scenario->clock)
                                           : scenario::parseTimes(options.times, input.scenario->clock);
   if (mesh) {
+    const WorkPart part("mesh over the terrain", 0, 0);
     series_options.mesh = std::make_shared<emfield::TerrainMesh>(*input.scenario, input.terrain.get(), *mesh);
     series_options.mesh_text = options.mesh;
   }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
@@ -33,7 +34,7 @@ bool isScenario(const std::vector<std::string>& inputs) {
 }
 
 int terrain(const TerrainCommand& command, const GlobalOptions& global) {
-  endAtInterrupts();
+  std::optional<EndAtInterrupts> at_once(std::in_place);
   std::vector<report::NamedFile> inputs;
   for (const std::string& input : command.inputs) inputs.push_back({"an input", input});
   report::checkOutputs({{"--output", command.picture}}, inputs, {});
@@ -55,6 +56,7 @@ int terrain(const TerrainCommand& command, const GlobalOptions& global) {
   if (command.draws_cover && result.terrain->landCover() == nullptr)
     throw Error(ErrorCode::usage,
                 "--land-cover draws the land cover of a scenario with 'terrain: {land_cover: ...}'");
+  at_once.reset();
   if (!command.picture.empty()) {
     const auto content =
         command.draws_cover ? study::TerrainContent::land_cover : study::TerrainContent::sources;

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
@@ -12,6 +15,7 @@
 #include "base/text/readable_text.h"
 #include "emfield/excess/model_choices.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/log.h"
 #include "emscape/base/work.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -20,6 +24,7 @@
 #include "report/paths/refractivity_report.h"
 #include "report/runs/work_report.h"
 #include "scenario/file/far_outside.h"
+#include "scenario/file/scenario_check.h"
 #include "scenario/model/step_check.h"
 
 namespace emscape::app {
@@ -96,7 +101,13 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, boo
                   std::vector<Problem>& problems, std::vector<emfield::EmitterChoice>& choices,
                   std::optional<report::WorkEstimate>& work, ErrorCode& status) {
   try {
-    const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
+    scenario::TerrainPtr terrain;
+    try {
+      terrain = scenario::loadTerrain(*scenario);
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::bad_input && scenario::addTerrainFaults(*scenario, problems)) return;
+      throw;
+    }
     if (terrain) {
       const bool is_allowed = allow_missing_terrain || scenario::mayLackTerrain(*scenario, false);
       checkCoverage(*scenario, *terrain, is_allowed, problems);
@@ -135,6 +146,36 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, boo
   }
 }
 
+/// While it exists, messages of libraries are kept; then they go to the console.
+class KeptLog {
+ public:
+  /// @param warnings  receives the warnings at the end
+  KeptLog(const GlobalOptions& global, std::vector<std::string>& warnings)
+      : global_(global), warnings_(warnings) {
+    setLogSink([this](LogLevel level, const std::string& message) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      messages_.emplace_back(level, message);
+    });
+  }
+  ~KeptLog() {
+    installLog(global_);
+    for (const auto& [level, message] : messages_) {
+      if (level == LogLevel::info) logInfo(message);
+      if (level != LogLevel::warning) continue;
+      logWarning(message);
+      warnings_.push_back(message);
+    }
+  }
+  KeptLog(const KeptLog&) = delete;
+  KeptLog& operator=(const KeptLog&) = delete;
+
+ private:
+  const GlobalOptions& global_;
+  std::vector<std::string>& warnings_;
+  std::mutex mutex_;
+  std::vector<std::pair<LogLevel, std::string>> messages_;
+};
+
 struct ValidateCommand {
   std::string file;
   std::vector<scenario::Edit> edits;
@@ -142,18 +183,29 @@ struct ValidateCommand {
 };
 
 int validate(const ValidateCommand& command, const GlobalOptions& global) {
-  endAtInterrupts();
+  const EndAtInterrupts at_once;
   const std::string& file = command.file;
-  scenario::ParseResult result = scenario::parseScenario(file, command.edits);
+  std::vector<std::string> warnings;
+  scenario::ParseResult result;
   std::vector<emfield::EmitterChoice> choices;
   std::optional<report::WorkEstimate> work;
   ErrorCode status = ErrorCode::bad_input;
-  if (result.scenario)
-    checkMeaning(result.scenario, command.allow_missing_terrain, result.problems, choices, work, status);
+  {
+    const KeptLog log(global, warnings);
+    result = scenario::parseScenarioToCheck(file, command.edits);
+    if (result.scenario)
+      checkMeaning(result.scenario, command.allow_missing_terrain, result.problems, choices, work, status);
+  }
   const bool ok = std::none_of(result.problems.begin(), result.problems.end(), isError);
 
   const std::string air = result.scenario ? report::airSource(*result.scenario) : "";
   if (global.json) {
+    for (const std::string& warning : warnings) {
+      Problem& problem = result.problems.emplace_back();
+      problem.location.file = file;
+      problem.severity = Severity::warning;
+      problem.message = warning;
+    }
     Json problems = Json::array();
     for (const Problem& problem : result.problems) {
       problems.push_back({{"file", problem.location.file},

@@ -120,7 +120,12 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
     study::checkVerticalPlot(size, command.azimuths_deg.size());
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
-  report::checkOutputs(report::outputsOf("--output", command.outputs), {}, {scenario});
+  std::vector<report::NamedFile> outputs = report::outputsOf("--output", command.outputs);
+  for (const double azimuth_deg : command.azimuths_deg) {
+    if (!command.areps.empty())
+      outputs.push_back({"--areps", report::arepsFile(command.areps, command.emitter, azimuth_deg)});
+  }
+  report::checkOutputs(outputs, {}, {scenario});
   report::requireFolders(command.outputs);
   const study::VerticalRequest request = requestOf(command, *scenario, other);
   const scenario::TerrainPtr terrain = study::loadVerticalTerrain(*scenario, request);

@@ -24,7 +24,8 @@ namespace fs = std::filesystem;
 
 void write(const fs::path& file, const std::string& text) {
   makeFolder(file.parent_path());
-  writeWhole(file, [&](std::ostream& out) { out << text; });
+  writeWhole(
+      file, [&](std::ostream& out) { out << text; }, Replaces::any);
 }
 
 CommandDescription& subcommandOf(CommandDescription& program, const std::string& name) {

@@ -35,12 +35,13 @@ constexpr int kWindowFits = 8;
 constexpr double kFitLimit_s = 5;
 constexpr render::ImageSize kUsualSize{1200, 900};
 
-/// With an asterisk for edits or colours that are not saved.
-std::string titleOf(const std::string& document, bool is_unsaved) {
+/// With an asterisk for edits or colours that are not saved. @param stream  its state; empty: none
+std::string titleOf(const std::string& document, bool is_unsaved, const std::string& stream) {
   const std::filesystem::path path = std::filesystem::path(document).lexically_normal();
   if (path.empty()) return "emscape";
   const std::filesystem::path named = path.has_filename() ? path : path.parent_path();
-  return (is_unsaved ? "* " : "") + named.filename().string() + " — emscape";
+  return (is_unsaved ? "* " : "") + named.filename().string() + (stream.empty() ? "" : " (" + stream + ")") +
+         " — emscape";
 }
 
 bool isFunctionKey(const KeyChord& chord) {
@@ -72,7 +73,7 @@ Area fittedInto(const Area& area, render::ImageSize size) {
 App::App(ViewOptions options, std::shared_ptr<MessageLog> messages)
     : log_(options.log.empty() ? EventLog() : EventLog(options.log)),
       script_(options.script.empty() ? Script() : Script(options.script)),
-      window_(titleOf(options.namesake(), false), options.window_size.value_or(kUsualSize),
+      window_(titleOf(options.namesake(), false, ""), options.window_size.value_or(kUsualSize),
               options.scales_window, options.scale),
       shares_gpu_(options.share_gpu && render::openGlSharesGpu()),
       files_(std::make_shared<Files>()),
@@ -167,7 +168,7 @@ void App::failIfNothingOpens() {
 }
 
 void App::showTitle() {
-  const std::string title = titleOf(session_->document(), session_->isUnsaved());
+  const std::string title = titleOf(session_->document(), session_->isUnsaved(), session_->streamTitle());
   if (std::exchange(title_, title) != title) window_.setTitle(title);
 }
 
@@ -258,7 +259,8 @@ void App::frame() {
   Stopwatch watch;
   window_.setTheme(session_->theme());
   ImGuiIO& io = ImGui::GetIO();
-  io.KeyMap[ImGuiKey_Tab] = scenarioPanelTakesTab(*session_) ? -1 : GLFW_KEY_TAB;
+  const bool moves_focus = isDialogOpen(session_->panels) || scenarioPanelTakesTab(*session_);
+  io.KeyMap[ImGuiKey_Tab] = moves_focus ? -1 : GLFW_KEY_TAB;
   // The keys walk through menus and lists while one is open, else they are for the picture or the panel.
   was_popup_open_ = isPopupOpen();  // Esc closes it when the frame begins
   io.ConfigFlags = was_popup_open_ ? io.ConfigFlags | ImGuiConfigFlags_NavEnableKeyboard
@@ -329,9 +331,8 @@ void App::draw(const Layout& layout) {
 void App::handleKeys(const std::vector<InputEvent>& events) {
   if (const auto key = std::exchange(waiting_key_, std::nullopt)) act(*key);
   const Panels& panels = session_->panels;
-  const bool dialog =
-      panels.record || panels.restore || panels.unsaved || panels.time || panels.replace || panels.warnings;
-  const bool typing = ImGui::GetIO().WantTextInput && !panels.open;
+  const bool asks = isOpen(panels, PanelKind::question), dialog = isDialogOpen(panels);
+  const bool typing = ImGui::GetIO().WantTextInput;
   for (const InputEvent& event : events) {
     if (event.kind != InputEvent::Kind::key || event.action == GLFW_RELEASE) continue;
     const KeyChord chord = chordOf(event);
@@ -340,13 +341,13 @@ void App::handleKeys(const std::vector<InputEvent>& events) {
       ImGui::ClosePopupToLevel(0, /*restore_focus_to_window_under_popup=*/true);  // menus and lists
       continue;
     }
-    if (typing && !dialog && !editsText(chord)) {  // as a click elsewhere the field gives its text first
+    if (typing && !asks && !editsText(chord)) {  // as a click elsewhere the field gives its text first
       ImGui::ClearActiveID();
       waiting_key_ = event;
       continue;
     }
     const bool in_panel = was_popup_open_ || scenarioPanelTakes(chord);
-    const bool is_for_panel = dialog || typing || (panels.open && editsText(chord)) ||
+    const bool is_for_panel = asks || typing || (dialog && editsText(chord)) ||
                               (in_panel && !chord.control && !isFunctionKey(chord));
     const bool is_global = chord.key == "F1" || chord.key == "F10" || chord.key == "F12" ||
                            (panels.warnings && toString(chord) == "Ctrl+Shift+W") ||

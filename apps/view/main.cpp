@@ -30,6 +30,11 @@ int fail(ErrorCode code, const std::string& message) {
   return static_cast<int>(code);
 }
 
+int tellSignal() {
+  std::fprintf(stderr, "emscape-view: stopped by signal %d\n", app::caughtSignal());
+  return 128 + app::caughtSignal();
+}
+
 void show(ViewOptions options) {
   const auto messages = std::make_shared<MessageLog>();  // for the window's list of warnings
   setLogSink([quiet = options.quiet, messages](LogLevel level, const std::string& line) {
@@ -52,7 +57,7 @@ void show(ViewOptions options) {
       playback::inputKindOf(options.view.input) == playback::InputKind::recording) {
     options.made_of = options.view.input;
     options.view.input = importRecordingFile(options.view.input, options.made_note);
-    logInfo(options.made_note);
+    logInfo(options.made_note.text(true));
   }
   if (!options.view.input.empty()) playback::addOwnScenario(options.view);
   // A wrong name and all errors in a scenario are reported before a window appears.
@@ -69,7 +74,12 @@ void show(ViewOptions options) {
       !scenario::parseScenario(options.view.input, options.view.edits).scenario) {
     scenario::loadScenario(options.view.input, options.view.edits);
   }
+  // Opening a window takes long in the driver. Nothing is written yet but the recording of a stream.
+  std::optional<app::EndAtInterrupts> at_once;
+  if (!options.stream) at_once.emplace();
+  app::stopIfInterrupted();
   App app(std::move(options), messages);  // a copy would keep the stream open after another input
+  at_once.reset();
   app.run();
 }
 
@@ -80,9 +90,9 @@ int viewMain(int argc, char** argv) {
   gdal::ignoreEnvironment();
   try {
     if (const std::optional<ViewOptions> options = parseOptions(argc, argv)) show(*options);
-    if (app::caughtSignal() == 0) return 0;
-    std::fprintf(stderr, "emscape-view: stopped by signal %d\n", app::caughtSignal());
-    return 128 + app::caughtSignal();
+    return app::caughtSignal() == 0 ? 0 : tellSignal();
+  } catch (const Stopped&) {
+    return tellSignal();
   } catch (const Error& error) {
     return fail(error.code(), error.what());
   } catch (const std::exception& error) {

@@ -173,6 +173,10 @@ void MouseControl::takePlatform(const SceneObject& object, const Area& picture, 
   drag_ = Drag::platform;
   platform_.reset();
   try {
+    const auto& scenario = session.picture()->scenario;
+    if (const auto index = static_cast<std::size_t>(object.platform);
+        scenario && index < scenario->platforms.size())
+      session.requireMovable(scenario->platforms[index].name);
     platform_.emplace(*session.picture(), object, x_ - picture.x, y_ - picture.y);
   } catch (const Error& error) {
     refusal_ = error.message();
@@ -196,7 +200,7 @@ void MouseControl::movePlatform(const Area& picture, Session& session) {
 
 void MouseControl::showCursor(const Area& picture, bool panels_want_mouse, const Session& session) const {
   if (drag_ == Drag::platform) {
-    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+    ImGui::SetMouseCursor(platform_ ? ImGuiMouseCursor_ResizeAll : ImGuiMouseCursor_NotAllowed);
     if (!is_moved_ || !platform_) return;
     // The picture follows as soon as possible.
     const ImVec2 cursor(static_cast<float>(x_), static_cast<float>(y_));

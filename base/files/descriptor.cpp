@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/files/folder.h"
 #include "emscape/base/error.h"
 
 namespace emscape {
@@ -22,7 +23,7 @@ void failWriting(const fs::path& file, const std::string& cause) {
 }
 
 void failExisting(const fs::path& file) {
-  throw Error(ErrorCode::usage, file.string() + " exists; --force replaces it, another --output keeps it");
+  throw Error(ErrorCode::usage, file.string() + " exists; --force replaces it, another name keeps it");
 }
 
 Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
@@ -48,8 +49,9 @@ Descriptor openFolderOf(const fs::path& file) {
     opened = Descriptor(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   }
   if (opened.isOpen()) return opened;
-  const bool is_missing = errno == ENOENT || errno == ENOTDIR;
-  failWriting(file, is_missing ? "the folder " + folder.string() + " does not exist" : causeOf(errno));
+  if (errno == ENOTDIR)
+    failWriting(file, fileInPath(folder).string() + " is a file, not a folder; give another output");
+  failWriting(file, errno == ENOENT ? "the folder " + folder.string() + " does not exist" : causeOf(errno));
 }
 
 Descriptor createFile(const Descriptor& folder, const fs::path& file, int flags) {

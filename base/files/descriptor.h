@@ -12,8 +12,7 @@ std::string causeOf(int error_number);
 /// @throws Error (other) "FILE: cannot write: CAUSE"
 [[noreturn]] void failWriting(const std::filesystem::path& file, const std::string& cause);
 
-/// @throws Error (usage) for an output that exists and is not to be replaced, with the options --force and
-/// --output
+/// @throws Error (usage) for an output that exists and is not to be replaced, with the option --force
 [[noreturn]] void failExisting(const std::filesystem::path& file);
 
 /// An open file or folder, closed at the end of its scope.

@@ -1,5 +1,7 @@
 #include "base/files/folder.h"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <system_error>
 #include <utility>
@@ -16,11 +18,29 @@ namespace {
 
 }  // namespace
 
+fs::path fileInPath(const fs::path& path) {
+  fs::path part;
+  for (const fs::path& name : path) {
+    part /= name;
+    std::error_code ignored;
+    const fs::file_status status = fs::status(part, ignored);
+    if (fs::exists(status) && !fs::is_directory(status)) return part;
+  }
+  return {};
+}
+
+void requireNoFileIn(const fs::path& folder) {
+  const fs::path file = fileInPath(folder);
+  if (file.empty()) return;
+  throw Error(ErrorCode::usage, {folder.string()},
+              fmt::format("is to be a folder, but {} is a file; give another output",
+                          folder == file ? "it" : file.string()));
+}
+
 void makeFolder(const fs::path& folder) {
+  requireNoFileIn(folder);
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed == std::errc::not_a_directory || failed == std::errc::file_exists)
-    throw Error(ErrorCode::usage, {folder.string()}, "is to be a folder, but it or a part of it is a file");
   if (failed) failMaking(folder, failed.message());
 }
 

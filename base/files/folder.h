@@ -5,6 +5,12 @@
 
 namespace emscape {
 
+/// The first part of a path that exists and is no folder; empty: there is none.
+std::filesystem::path fileInPath(const std::filesystem::path& path);
+
+/// @throws Error (usage) if a part of a folder's path is a file
+void requireNoFileIn(const std::filesystem::path& folder);
+
 /// Makes a folder and its parents, as far as they do not exist. Links are followed: the user names the
 /// folder.
 /// @throws Error (other) that names the folder and the cause

@@ -74,19 +74,23 @@ bool provesAbandoned(const Descriptor& record, const std::string& folder_name) {
 }
 
 /// Refuses a name to which nothing can be renamed: renaming to a folder fails late, and renaming to a device
-/// would replace it.
+/// would replace it. Renaming would also replace a file that the user has protected.
 void requireFileTarget(const fs::path& file) {
   std::error_code ignored;
   const fs::file_status status = fs::status(file, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     failWriting(file, fs::is_directory(status) ? "a folder of that name exists" : "it is not a regular file");
   }
+  if (fs::exists(status) && ::faccessat(AT_FDCWD, file.c_str(), W_OK, AT_EACCESS) != 0)
+    failWriting(file, causeOf(errno));
 }
 
 }  // namespace
 
-UnfinishedFile::UnfinishedFile(fs::path file) : file_(std::move(file)), folder_(openFolderOf(file_)) {
+UnfinishedFile::UnfinishedFile(fs::path file, Replaces replaces)
+    : file_(std::move(file)), replaces_(replaces), folder_(openFolderOf(file_)) {
   requireFileTarget(file_);
+  if (replaces_ == Replaces::own) requireOwn(file_);
   try {
     makeOwnFolder();
   } catch (...) {
@@ -180,36 +184,41 @@ void UnfinishedFile::write(const std::function<void(std::ostream&)>& fill) {
   }
 }
 
-int UnfinishedFile::rename(const std::string& name, bool replaces) const {
+int UnfinishedFile::rename(const std::string& name, Replaces replaces) {
   const Descriptor opened(
       ::openat(own_folder_.number(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (!opened.isOpen()) return errno;
+  if (const int cause = recordOwn(file_.parent_path() / name, opened); cause != 0) return cause;
   struct stat former {};  // who may read a file does not change because it is written anew
   const bool has_former = ::fstatat(folder_.number(), name.c_str(), &former, AT_SYMLINK_NOFOLLOW) == 0 &&
                           S_ISREG(former.st_mode) && former.st_uid == ::geteuid();
   if (has_former && ::fchmod(opened.number(), former.st_mode & 0777) != 0) return errno;
-  if (::fsync(opened.number()) != 0) return errno;
+  struct stat own {};
+  if (::fsync(opened.number()) != 0 || ::fstat(opened.number(), &own) != 0) return errno;
+  published_ = {own.st_dev, own.st_ino};
   const auto renamed = [&](unsigned flags) {
     return ::renameat2(own_folder_.number(), name.c_str(), folder_.number(), name.c_str(), flags) == 0;
   };
-  if (renamed(replaces ? 0 : RENAME_NOREPLACE)) return 0;
-  if (replaces || (errno != EINVAL && errno != ENOSYS)) return errno;
+  if (renamed(replaces == Replaces::nothing ? RENAME_NOREPLACE : 0)) return 0;
+  if (replaces != Replaces::nothing || (errno != EINVAL && errno != ENOSYS)) return errno;
   // The file system knows no renaming without replacement; a link never replaces.
   return ::linkat(own_folder_.number(), name.c_str(), folder_.number(), name.c_str(), 0) == 0 ? 0 : errno;
 }
 
-void UnfinishedFile::publish(const std::string& beside, bool replaces) {
+void UnfinishedFile::publish(const std::string& beside) {
   const std::string name = file_.filename();
+  if (replaces_ == Replaces::own) requireOwn(file_);
+  if (!beside.empty()) requireOwn(file_.string() + beside);
   if (!beside.empty()) {
-    const int cause = rename(name + beside, true);
+    const int cause = rename(name + beside, Replaces::any);
     if (cause == ENOENT) {
       ::unlinkat(folder_.number(), (name + beside).c_str(), 0);
     } else if (cause != 0) {
       failWriting(file_.string() + beside, causeOf(cause));
     }
   }
-  const int cause = rename(name, replaces);
-  if (cause == EEXIST && !replaces) failExisting(file_);
+  const int cause = rename(name, replaces_);
+  if (cause == EEXIST && replaces_ == Replaces::nothing) failExisting(file_);
   if (cause != 0) failWriting(file_, causeOf(cause));
   removeOwnFolder();
   // A rename is on the disk after this. Some file systems cannot sync a folder; the file is complete anyway.
@@ -217,7 +226,11 @@ void UnfinishedFile::publish(const std::string& beside, bool replaces) {
 }
 
 void UnfinishedFile::withdraw() {
-  ::unlinkat(folder_.number(), file_.filename().c_str(), 0);
+  const std::string name = file_.filename();
+  struct stat now {};
+  if (::fstatat(folder_.number(), name.c_str(), &now, AT_SYMLINK_NOFOLLOW) == 0 &&
+      now.st_dev == published_.device && now.st_ino == published_.number)
+    ::unlinkat(folder_.number(), name.c_str(), 0);
 }
 
 int removeAbandonedFiles(const fs::path& folder) {

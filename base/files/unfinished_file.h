@@ -1,12 +1,14 @@
 /// Files that appear under their name only when they are complete.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <ostream>
 #include <string>
 
 #include "base/files/descriptor.h"
+#include "base/files/own_file.h"
 
 namespace emscape {
 
@@ -17,8 +19,8 @@ namespace emscape {
 class UnfinishedFile {
  public:
   /// @throws Error (other) that names the file and the cause: missing folder, a folder or device of that
-  /// name, no permission
-  explicit UnfinishedFile(std::filesystem::path file);
+  /// name, no permission; (usage) as requireOwn()
+  explicit UnfinishedFile(std::filesystem::path file, Replaces replaces = Replaces::own);
   /// Removes everything that was not published.
   ~UnfinishedFile();
   UnfinishedFile(const UnfinishedFile&) = delete;
@@ -32,25 +34,28 @@ class UnfinishedFile {
   /// @throws Error (other) that names the file and the cause; exceptions that `fill` throws for reasons of
   /// its own pass through
   void write(const std::function<void(std::ostream&)>& fill);
-  /// Flushes the file to the disk and renames it.
+  /// Records the file as this program's, flushes it to the disk and renames it.
   /// @param beside  ending of a file that belongs to it, as GDAL's .aux.xml: renamed before it if there is
-  /// one,
-  ///                else that of an earlier file is removed; empty: none
-  /// @param replaces  false: a file that has the name by now stays
-  /// @throws Error (other) that names the file and the cause; (usage) if a file stays
-  void publish(const std::string& beside = "", bool replaces = true);
-  /// Removes the published file again.
+  ///                one, else that of an earlier file is removed; empty: none. One of another program is an
+  ///                error
+  /// @throws Error (other) that names the file and the cause; (usage) if a file of that name is to stay
+  void publish(const std::string& beside = "");
+  /// Removes the published file again, if it is still there under its name.
   void withdraw();
 
  private:
   void makeOwnFolder();
   void removeOwnFolder();
   /// @return errno, 0 if all went well
-  int rename(const std::string& name, bool replaces) const;
+  int rename(const std::string& name, Replaces replaces);
 
   std::filesystem::path file_, temporary_;
+  Replaces replaces_;
   Descriptor folder_;
   std::string own_name_;  ///< of the inner folder
+  struct {
+    std::uint64_t device = 0, number = 0;
+  } published_;  ///< the file's inode
   Descriptor own_folder_, record_;
 };
 

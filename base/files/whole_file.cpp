@@ -8,23 +8,23 @@
 
 namespace emscape {
 
-void writeWhole(const std::vector<OutputFile>& files, bool replaces) {
+void writeWhole(const std::vector<OutputFile>& files, Replaces replaces) {
   std::vector<std::unique_ptr<UnfinishedFile>> unfinished;
   for (const OutputFile& file : files) {
-    unfinished.push_back(std::make_unique<UnfinishedFile>(file.path));
+    unfinished.push_back(std::make_unique<UnfinishedFile>(file.path, replaces));
     unfinished.back()->write(file.write);
   }
   std::size_t published = 0;
   try {
-    for (; published < unfinished.size(); ++published) unfinished[published]->publish("", replaces);
+    for (; published < unfinished.size(); ++published) unfinished[published]->publish();
   } catch (...) {
-    while (!replaces && published-- > 0) unfinished[published]->withdraw();
+    while (replaces == Replaces::nothing && published-- > 0) unfinished[published]->withdraw();
     throw;
   }
 }
 
 void writeWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write,
-                bool replaces) {
+                Replaces replaces) {
   writeWhole({{path, write}}, replaces);
 }
 

@@ -27,6 +27,8 @@ void ignoreEnvironment() {
     }
   }
   for (const std::string& name : names) ::unsetenv(name.c_str());
+  // Where a call has no handler of errors, GDAL and PROJ would print beside the program's message.
+  ::setenv("CPL_LOG", "/dev/null", 1);
   // HDF5 would lock netCDF files, which are new and in folders of their own: some file systems have no locks.
   ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
 }

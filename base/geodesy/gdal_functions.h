@@ -39,7 +39,7 @@ const LoadedLibrary& library();
   F(GDALDatasetRasterIO) F(GDALDatasetReleaseResultSet) F(GDALDatasetStartTransaction) F(GDALDestroyApproxTransformer) \
   F(GDALDestroyColorTable) F(GDALDestroyRasterAttributeTable) F(GDALDimensionGetName) \
   F(GDALDimensionGetSize) F(GDALDimensionRelease) F(GDALExtendedDataTypeCreate) \
-  F(GDALExtendedDataTypeCreateString) F(GDALExtendedDataTypeRelease) F(GDALGetBlockSize) F(GDALGetColorEntryAsRGB) F(GDALGetColorEntryCount) \
+  F(GDALExtendedDataTypeCreateString) F(GDALExtendedDataTypeGetSize) F(GDALExtendedDataTypeRelease) F(GDALGetBlockSize) F(GDALGetColorEntryAsRGB) F(GDALGetColorEntryCount) \
   F(GDALGetDataTypeName) F(GDALGetDataTypeSizeBytes) F(GDALGetDatasetDriver) F(GDALGetDriverByName) F(GDALGetDriverShortName) \
   F(GDALGetFileList) F(GDALGetGCPCount) F(GDALGetGeoTransform) F(GDALGetMaskBand) F(GDALGetMaskFlags) F(GDALGetMetadata) F(GDALGetDescription) F(GDALGetMetadataItem) \
   F(GDALGetRasterBand) F(GDALGetRasterColorTable) F(GDALGetRasterCount) F(GDALGetRasterDataType) F(GDALGetRasterNoDataValue) \
@@ -47,7 +47,7 @@ const LoadedLibrary& library();
   F(GDALGetRasterScale) F(GDALGetRasterUnitType) F(GDALGetRasterXSize) \
   F(GDALGetRasterYSize) F(GDALGetSpatialRef) F(GDALGroupCreateAttribute) F(GDALGroupCreateDimension) \
   F(GDALGroupCreateMDArray) F(GDALGroupOpenMDArray) F(GDALGroupRelease) F(GDALIdentifyDriverEx) F(GDALInvGeoTransform) \
-  F(GDALMDArrayCreateAttribute) F(GDALMDArrayGetTotalElementsCount) F(GDALMDArrayRead) \
+  F(GDALMDArrayCreateAttribute) F(GDALMDArrayGetBlockSize) F(GDALMDArrayGetTotalElementsCount) F(GDALMDArrayRead) \
   F(GDALMDArrayRelease) F(GDALMDArraySetNoDataValueAsDouble) F(GDALMDArraySetRawNoDataValue) \
   F(GDALMDArraySetSpatialRef) F(GDALMDArraySetUnit) F(GDALMDArrayWrite) F(GDALOpenEx) F(GDALPolygonize) \
   F(GDALRATCreateColumn) F(GDALRATSetValueAsInt) F(GDALRATSetValueAsString) F(GDALRasterIO) \

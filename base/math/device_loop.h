@@ -5,14 +5,8 @@
 
 #include "emscape/base/host_device.h"
 
-/// A function that is called, not inlined: its registers are not part of its callers'.
-#if defined(__CUDACC__)
-#define EMSCAPE_NOINLINE __noinline__
-#else
-#define EMSCAPE_NOINLINE [[gnu::noinline]]
-#endif
-
-/// A call on the device; on the host the compiler chooses.
+/// A function that is called on the device, not inlined: its registers are not part of its callers', and its
+/// code is there once. On the host the compiler chooses.
 #if defined(__CUDACC__)
 #define EMSCAPE_DEVICE_CALL __noinline__
 #else

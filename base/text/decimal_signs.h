@@ -19,8 +19,16 @@ class DecimalSigns {
   /// @param cell  of a column of numbers
   void see(std::string_view cell, const SourceLocation& location) {
     if (cell.empty() || cell.find_first_not_of("+-0123456789.,") != std::string_view::npos) return;
-    see(comma_, ',', cell, location);
-    see(point_, '.', cell, location);
+    // Of both signs the last is decimal, and the other between thousands.
+    const std::size_t comma = cell.rfind(','), point = cell.rfind('.');
+    const bool has_both = comma != std::string_view::npos && point != std::string_view::npos;
+    if (!has_both || comma > point) see(comma_, ',', cell, location);
+    if (!has_both || point > comma) see(point_, '.', cell, location);
+  }
+
+  /// @param cell  of a column of coordinates, in which no comma is between thousands
+  void seeCoordinate(std::string_view cell) {
+    if (comma_.decimal.empty() && cell.find(',') != std::string_view::npos) comma_.decimal = cell;
   }
 
   /// @throws Error (bad_input) at the first number whose sign may be one between thousands, if others have
@@ -28,6 +36,25 @@ class DecimalSigns {
   void require() const {
     require(point_, "point", comma_, "comma");
     require(comma_, "comma", point_, "point");
+  }
+
+  /// @throws Error (bad_input) at the first number whose comma may be one between thousands, if none is
+  /// surely decimal
+  void requireClearComma() const {
+    if (comma_.unclear.empty() || !comma_.decimal.empty()) return;
+    throw Error(ErrorCode::bad_input, comma_.location,
+                fmt::format("'{}': is its comma decimal, or between thousands? Write numbers without commas, "
+                            "with points before decimals",
+                            comma_.unclear));
+  }
+
+  /// The same of a table whose cells are separated by commas, where one in quotes is between thousands.
+  void requireOneComma() const {
+    if (comma_.unclear.empty() || comma_.decimal.empty()) return;
+    throw Error(ErrorCode::bad_input, comma_.location,
+                fmt::format("'{}': is its comma decimal, or between thousands? '{}' has a decimal one; write "
+                            "numbers without commas, with points before decimals",
+                            comma_.unclear, comma_.decimal));
   }
 
  private:

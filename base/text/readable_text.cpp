@@ -25,17 +25,19 @@ std::string readableText(std::string message) {
   std::replace_if(
       message.begin(), message.end(), [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7F; },
       '?');
+  std::string text;
   for (std::size_t begin = 0; begin < message.size();) {
-    std::size_t end = std::min(message.find('\n', begin), message.size());
+    const std::size_t end = std::min(message.find('\n', begin), message.size());
     if (end - begin > kLongestLine) {
       const std::size_t from = characterBegin(message, begin + kLineBegin);
-      const std::size_t to = characterBegin(message, end - kLineEnd);
-      message.replace(from, to - from, kLeftOut);
-      end = end - (to - from) + kLeftOut.size();
+      text.append(message, begin, from - begin);
+      text += kLeftOut;
+      begin = characterBegin(message, end - kLineEnd);
     }
+    text.append(message, begin, end + 1 - begin);  // with the line's end
     begin = end + 1;
   }
-  return message;
+  return text;
 }
 
 }  // namespace emscape

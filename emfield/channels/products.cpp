@@ -27,7 +27,6 @@ bool isAgainstClutter(Quantity quantity) {
          quantity == Quantity::sclnr_db;
 }
 
-/// The task of a radar in a channel of a radar quantity, without the look.
 /// The ranges in which a radar can detect.
 HeardRanges heardRanges(const scenario::Waveform& waveform) {
   HeardRanges heard;
@@ -37,6 +36,19 @@ HeardRanges heardRanges(const scenario::Waveform& waveform) {
   return heard;
 }
 
+/// The echo over its mean that a target exceeds in a part of the looks.
+double echoExceeded(double part, Swerling swerling) {
+  if (swerling == Swerling::slow_exponential || swerling == Swerling::fast_exponential)
+    return -std::log(part);
+  double low = 0, high = 50;  // (1 + 2 x) exp(-2 x) = part
+  while (high - low > 1e-9) {
+    const double middle = (low + high) / 2;
+    ((1 + 2 * middle) * std::exp(-2 * middle) > part ? low : high) = middle;
+  }
+  return low;
+}
+
+/// The task of a radar in a channel of a radar quantity, without the look.
 RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Scenario& scenario) {
   const scenario::OutputSpec& output = scenario.output;
   RadarTask task;
@@ -54,6 +66,11 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Sce
       quantity == Quantity::detection_probability || quantity == Quantity::detection_age_s;
   if (is_detection && radar.waveform && radar.waveform->limits_detection)
     task.heard = heardRanges(*radar.waveform);
+  if (is_detection && radar.clutter) {
+    const auto weight = static_cast<float>(dbToRatio(correlationLossDb(radar)));
+    task.clutter.surface *= weight;
+    task.clutter.rain *= weight;
+  }
   switch (quantity) {
     case Quantity::detection_probability:
       task.measure = RadarMeasure::detection;
@@ -164,6 +181,44 @@ std::string legendNoteOf(Quantity quantity, const scenario::Scenario& scenario) 
     default:
       return "";
   }
+}
+
+Blanker blankerOf(double auxiliary, const Detector& detector, const DetectionCurve& curve) {
+  Blanker blanker;
+  blanker.auxiliary = static_cast<float>(auxiliary);
+  blanker.curve = curve.blanked();
+  const double echo = dbToRatio(-curve.loss_db());
+  // What is blanked of a steady echo S is a mean of exp(-p S) over rates p, of one that varies as a complex
+  // Gaussian variable that of 1 / (1 + p S), of one of case 4 that of 1 / (1 + p S / 2)^2. The others by the
+  // second, of complex powers: within 1.1e-4 and 7e-4.
+  if (isSteadyInALook(detector)) {
+    blanker.parts[0] = {{1.2387059f, -1.4792465f}, {0.4102354f, 0.3121898f}};
+    blanker.parts[1] = {{-0.2387059f, -0.0769748f}, {-0.0276183f, 0.2748741f}};
+  } else if (detector.swerling == Swerling::fast_dominant) {
+    blanker.fluctuation = 0.5f;
+    blanker.parts[0] = {{1, -20}, {0.4987531f, 0.0249377f}};
+  } else {
+    blanker.fluctuation = 1;
+    blanker.parts[0] = {{1, 0}, {1, 0}};
+  }
+  if (!isSteadyInALook(detector) || detector.swerling == Swerling::steady) {
+    blanker.echo_count = 1;
+    blanker.echoes[0] = static_cast<float>(echo);
+    blanker.weights[0] = 1;
+    return blanker;
+  }
+  // Gauss and Legendre's, over the part of the looks.
+  constexpr double kNodes[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                               0.9602898564975363};
+  constexpr double kWeights[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                 0.1012285362903763};
+  for (int n = 0; n < kMaxBlankedEchoes; ++n) {
+    const double part = (1 + (n % 2 == 0 ? kNodes[n / 2] : -kNodes[n / 2])) / 2;
+    blanker.echoes[n] = static_cast<float>(echo * echoExceeded(part, detector.swerling));
+    blanker.weights[n] = static_cast<float>(kWeights[n / 2] / 2);
+  }
+  blanker.echo_count = kMaxBlankedEchoes;
+  return blanker;
 }
 
 ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario) {
@@ -280,6 +335,11 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
     if (!is_age && channel.quantity != Quantity::detection_probability) continue;
     plan.curves.push_back(detectionCurveOf(radar));
     plan.radars.back().curve = plan.curves.back()->view();
+    if (const auto& blanking = radar.receiver.side_lobe_blanking) {
+      plan.radars.back().blanker = blankerOf(
+          dbToRatio(blanking->auxiliary_gain_dbi - blanking->threshold_db - radar.antenna->gain_dbi),
+          detectorOf(radar.receiver), *plan.curves.back());
+    }
   }
   return plan;
 }

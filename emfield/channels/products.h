@@ -83,6 +83,10 @@ struct ChannelPlan {
   bool reducesPower() const { return radars.empty() && occupancy_threshold_wm2 == 0; }
 };
 
+/// @param auxiliary  Blanker::auxiliary
+/// @param curve      of the detector, with that of blanked pulses; the blanker points to it
+Blanker blankerOf(double auxiliary, const Detector& detector, const DetectionCurve& curve);
+
 /// @throws Error (bad_input) if the scenario lacks an object that the quantity needs (a receiver, a radar)
 ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario);
 

@@ -1,5 +1,7 @@
 #include "emfield/channels/radar_share.h"
 
+#include <algorithm>
+
 #include "emfield/channels/radar_clutter.h"
 #include "emfield/radar/receiver.h"
 
@@ -30,6 +32,7 @@ RadarShare radarShare(const scenario::Scenario& scenario, int radar, const Emitt
     JammerAtRadar received;
     received.direction = inFrame(jammer.direction);
     received.boresight_to_noise = static_cast<float>(to_noise);
+    received.duty = static_cast<float>(scenario.emitters[jammer.jammer].dutyCycle());
     if (const auto& reflected = jammer.reflected) {
       received.has_reflected_ray = true;
       received.reflected = reflected->ray;
@@ -38,6 +41,15 @@ RadarShare radarShare(const scenario::Scenario& scenario, int radar, const Emitt
       received.reflected_amplitude = static_cast<float>(reflected->reflected_amplitude);
     }
     share.jammers.push_back(received);
+  }
+  const auto pulsed = std::stable_partition(share.jammers.begin(), share.jammers.end(),
+                                            [](const JammerAtRadar& jammer) { return jammer.duty >= 1; });
+  if (!task.blanker.isNone() && share.jammers.end() - pulsed > kMaxPulsedJammers) {
+    std::stable_sort(pulsed, share.jammers.end(), [](const JammerAtRadar& a, const JammerAtRadar& b) {
+      return a.boresight_to_noise < b.boresight_to_noise;
+    });
+    std::for_each(pulsed, share.jammers.end() - kMaxPulsedJammers,
+                  [](JammerAtRadar& jammer) { jammer.duty = 1; });
   }
   return share;
 }

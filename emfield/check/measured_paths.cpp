@@ -18,6 +18,7 @@
 #include "emscape/base/units.h"
 #include "emscape/base/work.h"
 #include "emscape/emfield/link/path_budget.h"
+#include "emscape/emfield/solver/steep_ground.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
@@ -237,6 +238,7 @@ PathTerrain terrainStateOf(const PathProfile& profile, double wavelength) {
 /// What a path adds to the results of all.
 struct Computed {
   std::vector<std::string> warnings, refusals;  ///< refusals by model
+  std::vector<propagation::SteepGround> steep;
 };
 
 /// The warnings of all paths, each with the number of paths that have it with any numbers.
@@ -284,6 +286,7 @@ Computed compute(const scenario::Scenario& scenario, const scenario::Emitter& em
       const PathExcess excess = pathExcess(scenario, by_model, {}, profile, terrain);
       loss_db = free_space_db + excess.loss_db;
       found.warnings.insert(found.warnings.end(), excess.warnings.begin(), excess.warnings.end());
+      if (excess.steep) found.steep.push_back(*excess.steep);
     } catch (const Error& error) {
       refusal = error.message();
     }
@@ -420,6 +423,11 @@ MeasuredCheck checkMeasuredPaths(const std::string& file, const scenario::Scenar
   }
   check.warnings.assign(warnings.begin(), warnings.end());
   for (std::string& warning : warningsOfPaths(found)) check.warnings.push_back(std::move(warning));
+  SteepGrounds steep;
+  for (Computed& computed : found) {
+    for (propagation::SteepGround& march : computed.steep) steep[emitter.name].push_back(std::move(march));
+  }
+  for (std::string& warning : steepGroundWarnings(steep)) check.warnings.push_back(std::move(warning));
   return check;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/files/file_reading.h"
 #include "document/csv.h"
+#include "emscape/base/log.h"
 #include "emscape/base/work.h"
 
 namespace emscape::emfield {
@@ -28,6 +29,8 @@ std::vector<Line> readLines(const std::filesystem::path& file) {
     lines.push_back({row.line, {}});
     for (const document::CsvCell& cell : row.cells) lines.back().cells.emplace_back(cell.text);
   }
+  if (const std::string unended = reader.unendedWarning(file.string(), "a row"); !unended.empty())
+    logWarning(unended);
   return lines;
 }
 

@@ -7,6 +7,7 @@
 #include "emfield/cpu/both_rays.h"
 #include "emfield/cpu/row.h"
 #include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
 
 namespace emscape::emfield {
 namespace {
@@ -159,6 +160,7 @@ void combineCpu(const CombineTask& task) {
     std::vector<float> buffer(task.dims.x);
     for (int j = begin; j < end; ++j) {
       for (int k = task.first_row_k == nullptr ? 0 : task.first_row_k[j]; k < task.dims.z; ++k) {
+        checkpoint();
         combineRow(task, j, k, buffer.data());
       }
     }

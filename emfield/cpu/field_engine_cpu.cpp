@@ -102,6 +102,7 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     GeometryResult found;
     found.unknown_columns = geometry.unknownColumns();
     found.warnings = geometry.warnings();
+    found.steep = geometry.steep();
     found.column_step = geometry.columnStep();
     if (EmitterGeometry::interpolates(*setup_.scenario, setup_.scenario->emitters[request.emitter],
                                       setup_.columns, setup_.needs[request.emitter]))

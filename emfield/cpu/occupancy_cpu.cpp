@@ -2,6 +2,7 @@
 #include "emfield/combine/occupancy.h"
 #include "emfield/cpu/row.h"
 #include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
 
 namespace emscape::emfield {
 namespace {
@@ -30,6 +31,7 @@ void occupancyCpu(const OccupancyPass& pass) {
   parallelFor(dims.y, 1, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
       for (int k = pass.first_row_k == nullptr ? 0 : pass.first_row_k[j]; k < dims.z; ++k) {
+        checkpoint();
         const std::size_t column = static_cast<std::size_t>(j) * dims.x;
         const std::size_t voxel = static_cast<std::size_t>(k) * dims.x * dims.y + column;
         const Row row{column, dims.x, pass.t_m[k]};

@@ -5,6 +5,7 @@
 #include "base/math/simd.h"
 #include "emfield/channels/products.h"
 #include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
 
 namespace emscape::emfield {
 namespace {
@@ -66,6 +67,7 @@ volume::ValueRange fillRows(const ProductTask& task, int j) {
       first_valid_k == nullptr ? 0 : *std::max_element(first_valid_k, first_valid_k + count);
   volume::ValueRange range = kNothing;
   for (int k = 0; k < task.dims.z; ++k) {
+    checkpoint();
     const std::size_t first = (static_cast<std::size_t>(k) * task.dims.y + j) * count;
     const float* accumulator = task.accumulator + first;
     float* values = task.values + first;

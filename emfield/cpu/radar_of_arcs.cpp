@@ -1,6 +1,7 @@
 #include "emfield/cpu/radar_of_arcs.h"
 
 #include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
 
 namespace emscape::emfield {
 namespace {
@@ -18,8 +19,10 @@ void addRow(const RadarPass& pass, int j, int k) {
 void radarOfArcsCpu(const RadarPass& pass) {
   parallelFor(pass.dims.y, 1, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
-      for (int k = pass.first_row_k == nullptr ? 0 : pass.first_row_k[j]; k < pass.dims.z; ++k)
+      for (int k = pass.first_row_k == nullptr ? 0 : pass.first_row_k[j]; k < pass.dims.z; ++k) {
+        checkpoint();
         onPattern(pass.beam.pattern, [&](auto kind) { addRow<kind>(pass, j, k); });
+      }
     }
   });
 }

@@ -252,6 +252,7 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
     if (marcher == nullptr) marcher = std::make_unique<Marcher>();
     return *marcher;
   };
+  clock.begin(stream);  // before the host waits for a march's memory, as it may for most of its time
   for (std::size_t n = 0; n < std::min(marched.size(), marchers_.size()); ++n)
     startMarch(*marched[n], marcherOf(n));
   for (std::size_t n = 0; n < marched.size(); ++n) {
@@ -281,6 +282,7 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
     }
     found.unknown_columns = counts[r].unknown_columns;
     found.warnings = counts[r].warnings;
+    if (works[r].model) found.steep = works[r].model->steep;
     found.near_voxels = static_cast<long long>(counts[r].near_voxels);
     if (found.unknown_columns > 0) {
       found.unknown.resize(columns);
@@ -419,9 +421,8 @@ void DeviceGeometry::startMarch(Work& work, Marcher& marcher) {
   marcher.marched.record(marcher.stream);
 }
 
-/// The voxels of an emitter whose march has begun.
+/// The voxels of an emitter whose march has begun; the clock runs since the voxels of the one before.
 void DeviceGeometry::readMarch(const Work& work, Marcher& marcher, cudaStream_t stream, StageClock& clock) {
-  clock.begin(stream);
   marcher.marched.holdBack(stream);
   clock.end(&StageTimes::march_ms, stream);
   clock.countMarch(marchedHeights(*work.model));
@@ -431,6 +432,7 @@ void DeviceGeometry::readMarch(const Work& work, Marcher& marcher, cudaStream_t 
                excess_grid_, columns_.row, scratch(), stream);
   clock.end(&StageTimes::excess_ms, stream);
   marcher.read.record(stream);
+  clock.begin(stream);  // of the next wait
 }
 
 ScratchMemory DeviceGeometry::scratch() {

@@ -53,6 +53,7 @@ struct ChannelBuffers {
 /// The tables to which a radar's contribution to a channel points.
 struct RadarTables {
   Buffer<DetectionCurveView::Knot> knots;
+  Buffer<float> blanked_probabilities;
   Buffer<JammerAtRadar> jammers;
   Buffer<LookArc> directions;
   Buffer<CountedArc> counts;
@@ -192,8 +193,15 @@ void CudaEngine::combine(const CombinePass& pass) {
       if (tables.knots.size() == 0) {
         tables.knots.upload(share.task.curve.knots, static_cast<std::size_t>(share.task.curve.count),
                             stream_);
+        const BlankedCurveView& blanked = share.task.blanker.curve;
+        if (blanked.rows > 0) {
+          tables.blanked_probabilities.upload(
+              blanked.probabilities,
+              static_cast<std::size_t>(blanked.rows) * BlankedCurveView::kVariances * blanked.count, stream_);
+        }
       }
       radar.task.curve.knots = tables.knots.data();
+      radar.task.blanker.curve.probabilities = tables.blanked_probabilities.data();
       radar.task.jammers = tables.jammers.send(share.jammers, stream_);
       radar.task.look_arcs = tables.directions.send(share.arcs.directions, stream_);
       radar.task.looks.arcs = tables.counts.send(share.arcs.counts, stream_);

@@ -10,7 +10,8 @@
 
 namespace emscape::emfield::cuda {
 
-/// Sums of the intervals of each stage. begin() and end() only record events on the stream.
+/// Sums of the intervals of each stage. begin() and end() only record events on the stream; of several
+/// begin() before an end() the last one counts.
 class StageClock {
  public:
   using Stage = double StageTimes::*;

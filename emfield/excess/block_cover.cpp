@@ -73,10 +73,12 @@ EMSCAPE_SIMD_CLONES unsigned BlockCover::raise(const CoverTask& task, unsigned l
   const auto per_column = static_cast<float>(per_column_), per_row = static_cast<float>(per_row_);
   const Floats x = (to_columns - task.column[0]) * per_column + static_cast<float>(column - west);
   const Floats y = (to_rows - task.row[0]) * per_row + static_cast<float>(row - south);
-  const Ints none{}, one = none + 1;
+  const Floats zero{};
   const auto floorOf = [](const Floats& of, Ints& cell) {
     cell = __builtin_convertvector(of, Ints);
-    cell = __builtin_convertvector(cell, Floats) > of ? cell - 1 : cell;
+    Ints is_under;
+    setAbove(__builtin_convertvector(cell, Floats), of, is_under);
+    cell += is_under;
   };
   Ints cell_x, cell_y;
   floorOf(x, cell_x);
@@ -84,22 +86,41 @@ EMSCAPE_SIMD_CLONES unsigned BlockCover::raise(const CoverTask& task, unsigned l
   const Floats in_x = x - __builtin_convertvector(cell_x, Floats),
                in_y = y - __builtin_convertvector(cell_y, Floats);
   // A path beside crosses a line farther along it, the more parallel the farther.
-  const Floats x_on = columns_on * (per_column * rows_per_m_), y_on = rows_on * (per_row * columns_per_m_);
-  const Floats along_x = x_on < 0 ? -x_on : x_on, along_y = y_on < 0 ? -y_on : y_on;
   Floats near_x = beside_m * columns_per_m_, near_y = beside_m * rows_per_m_;
-  if (task.on == PostOn::column) {
-    near_x = Floats{} + kOnLine_m * columns_per_m_;
-    near_y *= 1 + along_y / (along_x + kLeast);
-  } else if (task.on == PostOn::row) {
-    near_x *= 1 + along_x / (along_y + kLeast);
-    near_y = Floats{} + kOnLine_m * rows_per_m_;
+  if (task.on != PostOn::neither) {
+    const Floats x_on = columns_on * (per_column * rows_per_m_), y_on = rows_on * (per_row * columns_per_m_);
+    const auto setLength = [&](const Floats& on, Floats& length) {
+      Ints is_negative;
+      setAbove(zero, on, is_negative);
+      choose(is_negative, -on, on, length);
+    };
+    Floats along_x, along_y;
+    setLength(x_on, along_x);
+    setLength(y_on, along_y);
+    if (task.on == PostOn::column) {
+      near_x = zero + kOnLine_m * columns_per_m_;
+      near_y *= 1 + along_y / (along_x + kLeast);
+    } else {
+      near_x *= 1 + along_x / (along_y + kLeast);
+      near_y = zero + kOnLine_m * rows_per_m_;
+    }
   }
-  const Ints after_x = in_x > 1 - near_x ? one : none, after_y = in_y > 1 - near_y ? one : none;
-  const Ints beside_x = in_x < near_x ? -one : after_x, beside_y = in_y < near_y ? -one : after_y;
-  const Floats beyond_m = distance_m - range_m, nearer_m = range_m < beyond_m ? range_m : beyond_m;
-  const Ints is_raised = nearer_m > kFree_m - kRounding_m ? one : none;
-  const Ints is_near_end = nearer_m > kFree_m + kRounding_m ? none : one;
-  const Ints is_other = beside_x | beside_y | is_near_end;
+  const auto setBeside = [](const Floats& in, const Floats& near, Ints& beside) {
+    Ints is_before, is_after;
+    setAbove(near, in, is_before);
+    setAbove(in, 1 - near, is_after);
+    beside = is_before | (-is_after & ~is_before);
+  };
+  Ints beside_x, beside_y, is_nearer_tx, is_raised, is_beyond_end;
+  setBeside(in_x, near_x, beside_x);
+  setBeside(in_y, near_y, beside_y);
+  const Floats beyond_m = distance_m - range_m;
+  Floats nearer_m;
+  setAbove(beyond_m, range_m, is_nearer_tx);
+  choose(is_nearer_tx, range_m, beyond_m, nearer_m);
+  setAbove(nearer_m, zero + (kFree_m - kRounding_m), is_raised);
+  setAbove(nearer_m, zero + (kFree_m + kRounding_m), is_beyond_end);
+  const Ints is_other = beside_x | beside_y | ~is_beyond_end;
   int columns[kPathLanes], rows[kPathLanes], to_column[kPathLanes], to_row[kPathLanes];
   int raised_of[kPathLanes], other_of[kPathLanes];
   store(cell_x + west, columns);

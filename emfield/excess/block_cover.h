@@ -1,8 +1,7 @@
 /// Clutter heights at posts of several paths.
 #pragma once
 
-#include <cstring>
-
+#include "base/math/lanes.h"
 #include "emfield/ground/read_cover.h"
 
 namespace emscape::emfield {
@@ -12,14 +11,21 @@ constexpr int kPathLanes = 16;
 using PathFloats = float __attribute__((vector_size(kPathLanes * sizeof(float))));
 using PathInts = int __attribute__((vector_size(kPathLanes * sizeof(int))));
 
-// Vectors are parameters by reference: as values they have no calling convention on all processors.
-template <class Vector>
-inline void load(const void* numbers, Vector& vector) {
-  std::memcpy(&vector, numbers, sizeof vector);
+// Choices by bits: g++ 12 computes comparisons of vectors that are wider than the processor's one by one.
+
+/// All bits of the lanes where a number is larger than another; none elsewhere. Not for two infinite ones.
+inline void setAbove(const PathFloats& number, const PathFloats& other, PathInts& bits) {
+  const PathFloats under = other - number;
+  load(&under, bits);
+  bits >>= 31;
 }
-template <class Vector>
-inline void store(const Vector& vector, void* numbers) {
-  std::memcpy(numbers, &vector, sizeof vector);
+/// `chosen` in the lanes of the bits, `otherwise` elsewhere.
+inline void choose(const PathInts& bits, const PathFloats& chosen, const PathFloats& otherwise,
+                   PathFloats& result) {
+  PathInts a, b;
+  load(&chosen, a);
+  load(&otherwise, b);
+  store(b ^ ((a ^ b) & bits), &result);
 }
 
 /// The lines between posts of the finest raster on which a post is.

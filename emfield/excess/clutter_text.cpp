@@ -54,15 +54,12 @@ std::string clutterText(const scenario::Scenario& scenario, const scenario::Emit
   if (const double height_m = constantClutter_m(settings); height_m > 0)
     text = fmt::format("{:g} m high along the path", height_m);
   if (propagation::hasTerminalClutter(emitterInputs(scenario, emitter)))
-    text += fmt::format(
-        "{}ITU-R P.2108-1 (3.2) at {} up to {:g} m above the ground, {:g} % of locations{}{}",
-        text.empty() ? "" : "; ",
-        ground.terminal_clutter_ends == propagation::ClutterEnds::both ? "both ends" : "receivers",
-        ground.terminal_clutter_below_m, ground.terminal_clutter_percent,
-        ground.terminal_clutter_ends == propagation::ClutterEnds::both ? " of each" : "",
-        ground.terminal_clutter_combine == propagation::ClutterCombination::larger
-            ? ", or the loss by terrain if that is larger"
-            : "");
+    text += fmt::format("{}ITU-R P.2108-1 (3.2) at ends up to {:g} m above the ground, {:g} % of locations{}",
+                        text.empty() ? "" : "; ", ground.terminal_clutter_below_m,
+                        ground.terminal_clutter_percent,
+                        ground.terminal_clutter_combine == propagation::ClutterCombination::larger
+                            ? ", or the loss by terrain if that is larger"
+                            : "");
   return text.empty() ? "none" : text;
 }
 

@@ -35,19 +35,19 @@ using propagation::EffectiveHeights;
 using propagation::TerrainTrend;
 
 // Separate calls, so that their registers and their code are not part of those of the columns.
-EMSCAPE_NOINLINE EMSCAPE_HD inline float groundOf(const Station& station, const GroundPosts& ground,
-                                                  const FastInverse& path) {
+EMSCAPE_DEVICE_CALL EMSCAPE_HD inline float groundOf(const Station& station, const GroundPosts& ground,
+                                                     const FastInverse& path) {
   return groundAt(station, ground, path);
 }
-EMSCAPE_NOINLINE EMSCAPE_HD inline float effectiveHeight_m(const Station& station, float height_msl_m,
-                                                           double range_m) {
+EMSCAPE_DEVICE_CALL EMSCAPE_HD inline float effectiveHeight_m(const Station& station, float height_msl_m,
+                                                              double range_m) {
   return static_cast<float>(
       station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m), station.height_msl_m, range_m));
 }
 
-EMSCAPE_NOINLINE EMSCAPE_HD inline float smoothEarthNu(const DiffractionModel<float>& model,
-                                                       ColumnPosts& posts, float distance_m,
-                                                       const EffectiveHeights<float>& heights) {
+EMSCAPE_DEVICE_CALL EMSCAPE_HD inline float smoothEarthNu(const DiffractionModel<float>& model,
+                                                          ColumnPosts& posts, float distance_m,
+                                                          const EffectiveHeights<float>& heights) {
   return propagation::smoothEarthNu(model, distance_m, heights,
                                     [&](float range_m) { return posts.around(range_m); });
 }
@@ -86,10 +86,22 @@ class CandidatePosts {
 
   /// The largest measures of the posts so far, in order of their ranges, seen from a receiver.
   struct Records {
-    float slope;  ///< of the line of sight
-    float rx_slope = -HUGE_VALF, nearest = -HUGE_VALF, plain_rx_slope = -HUGE_VALF, plain_m = -HUGE_VALF;
+    float slope;    ///< of the line of sight
+    float nearest;  ///< at first that of a post that is clear
+    float rx_slope, plain_rx_slope, plain_m;
 
-    EMSCAPE_HD explicit Records(float slope_) : slope(slope_) {}
+    /// Those of the posts beyond all.
+    EMSCAPE_HD explicit Records(float slope_)
+        : slope(slope_),
+          nearest(-HUGE_VALF),
+          rx_slope(-HUGE_VALF),
+          plain_rx_slope(-HUGE_VALF),
+          plain_m(-HUGE_VALF) {}
+    /// For the lowest receiver: posts below its line of sight decide only on its clearance, as they do for
+    /// those above.
+    /// @param clear  of a post that is clear, its height over sqrt(d1 d2)
+    EMSCAPE_HD Records(float slope_, float clear)
+        : slope(slope_), nearest(clear), rx_slope(0), plain_rx_slope(0), plain_m(0) {}
 
     /// @tparam kPlain  also those without the earth's bulge
     /// @return true if the next post exceeds one
@@ -189,11 +201,6 @@ class Receivers {
   template <int kReceivers>
   EMSCAPE_HD bool survey(float lowest_m, float highest_m, const float* rx_m, Maxima* most) {
     has_earth_ = !isClearThroughout(task_.model.model.earth, distance_m_, tx_m_, lowest_m - ground_m_);
-    if (has_earth_) {
-      constexpr float kOff_m = 2;  // at most, of the line through some posts
-      fitToSome();
-      has_earth_ = isInEarth(lowest_m, kOff_m);
-    }
     const float slope = slopeTo(lowest_m);
     const bool for_any = isForAnyLane(has_earth_);  // one loop for all threads
     const bool is_known =
@@ -296,20 +303,12 @@ class Receivers {
       was_sea = is_sea;
     }
   };
-  /// @param sums  of all posts, or of some
   EMSCAPE_HD void setTrend(TrendSums& sums) {
     sums.add(distance_m_, ground_m_ + base_msl_m_);
     const propagation::TerrainSums of_terrain{static_cast<double>(sums.v1), static_cast<double>(sums.v2)};
     trend_start_m_ = static_cast<float>(of_terrain.start_m(static_cast<double>(distance_m_)));
     trend_end_m_ = static_cast<float>(of_terrain.end_m(static_cast<double>(distance_m_)));
     if (task_.model.model.sea_by_height) sea_fraction_ = sums.sea_m / distance_m_;
-  }
-  /// From every second regular post, which are at the spacing of the elevation model, and of long paths from
-  /// some hundred.
-  EMSCAPE_NOINLINE EMSCAPE_HD void fitToSome() {
-    TrendSums sums(base_msl_m_);
-    posts_.eachOfSome([&](const PathPost& post) { sums.add(post.range_m, post.height_msl_m); });
-    setTrend(sums);
   }
 
   /// What posts of a part of the path that are not higher than a height cannot exceed.
@@ -339,7 +338,7 @@ class Receivers {
   /// @tparam kEarth  also for the smooth earth
   /// @param lowest_slope  of the line of sight to the lowest receiver
   template <int kReceivers, bool kEarth>
-  EMSCAPE_NOINLINE EMSCAPE_HD bool pass(const float* rx_m, float lowest_slope, Maxima* most) {
+  EMSCAPE_DEVICE_CALL EMSCAPE_HD bool pass(const float* rx_m, float lowest_slope, Maxima* most) {
     constexpr bool kKeeps = kReceivers == 0;
     const float clearance = -propagation::kKnifeEdgeClear<float> / edge_scale_;
     const float d = distance_m_, half_curvature = half_curvature_;
@@ -348,14 +347,15 @@ class Receivers {
     float tx, clear, plain_tx, unknown;
     bool is_whole;
     Several<kReceivers, kEarth, true> several(*this, rx_m);
-    CandidatePosts::Records records(lowest_slope);
+    const float clear_of_all = -1.001f * clearance;
+    CandidatePosts::Records records(lowest_slope, clear_of_all);
     TrendSums trend(base_msl_m);
     do {
       trend = TrendSums(base_msl_m);
       tx = clear = plain_tx = -HUGE_VALF;
       unknown = base_msl_m_ - base_msl_m_ + (ground_m_ - ground_m_);
       several.clear();
-      records = CandidatePosts::Records(lowest_slope);
+      records = CandidatePosts::Records(lowest_slope, clear_of_all);
       kept = 0;
       const auto skips = [&](float from_m, float to_m, float highest_msl_m) -> bool {
         if constexpr (kReceivers > 1) return false;  // after a first pass of too many candidates
@@ -390,12 +390,12 @@ class Receivers {
   }
   /// Leaves out the candidates that exceed no farther ones for a receiver at that slope and those below.
   template <bool kEarth>
-  EMSCAPE_NOINLINE EMSCAPE_HD void thin(float highest_slope) {
+  EMSCAPE_DEVICE_CALL EMSCAPE_HD void thin(float highest_slope) {
     CandidatePosts::Records records(highest_slope);
     candidates_.keepBackwards([&](const PathPost& post) { return records.template add<kEarth>(seen(post)); });
   }
   template <int kReceivers, bool kEarth>
-  EMSCAPE_NOINLINE EMSCAPE_HD void findAmongCandidates(const float* rx_m, Maxima* most) const {
+  EMSCAPE_DEVICE_CALL EMSCAPE_HD void findAmongCandidates(const float* rx_m, Maxima* most) const {
     Several<kReceivers, kEarth, false> several(*this, rx_m);
     candidates_.each([&](const PathPost& post) { several.add(seen(post)); });
     several.get(tx_slope_, most);
@@ -405,12 +405,10 @@ class Receivers {
     return propagation::clearTrend(trend_start_m_, trend_end_m_, ground_m_);
   }
   /// False if the smooth earth has no loss for a receiver and those above; see LaneColumn.
-  /// @param off_m  that the line may be off
-  EMSCAPE_HD bool isInEarth(float rx_m, float off_m = 0) const {
+  EMSCAPE_HD bool isInEarth(float rx_m) const {
     if (!has_earth_) return false;
     const EffectiveHeights<float> least = effectiveHeights(trend(), tx_m_, rx_m);
-    return !isClearThroughout(task_.model.model.earth, distance_m_, fmaxf(least.tx_m - off_m, 0),
-                              fmaxf(least.rx_m - off_m, 0));
+    return !isClearThroughout(task_.model.model.earth, distance_m_, least.tx_m, least.rx_m);
   }
   /// Smooth-earth correction (dB): the spherical earth's loss minus Bullington's, at least 0.
   EMSCAPE_HD float earthCorrectionDb(float rx_m, const Maxima& most) const {
@@ -478,10 +476,12 @@ EMSCAPE_HD bool fillDiffraction(const DiffractionTask& task, const ExcessGrid& g
     float rx_m[kReceivers];
     const auto receiverOf = [&](int layer) {
       const float height_msl_m = heightOf(layer);
+      // Only high ones are changed; the call alone takes longer than the rest.
+      const bool is_high =
+          task.station.refraction.exponential && height_msl_m > static_cast<float>(Refraction::kLinear_m);
       return receivers.receiver_m(
-          task.station.refraction.exponential
-              ? diffraction_detail::effectiveHeight_m(task.station, height_msl_m, path.distance_m)
-              : height_msl_m);
+          is_high ? diffraction_detail::effectiveHeight_m(task.station, height_msl_m, path.distance_m)
+                  : height_msl_m);
     };
     const auto setReceivers = [&] {
       EMSCAPE_UNROLL

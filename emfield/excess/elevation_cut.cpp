@@ -11,9 +11,25 @@
 namespace emscape::emfield {
 namespace {
 
-bool radiatesCut(const scenario::Emitter& emitter) {
+using propagation::PeRadiator;
+
+bool isMarched(const scenario::Emitter& emitter, PeRadiator source) {
   return emitter.propagation.model == propagation::PropagationModel::parabolic_equation &&
-         emitter.propagation.parabolic_equation.source == propagation::PeRadiator::pattern;
+         emitter.propagation.parabolic_equation.source == source;
+}
+
+/// Elevation (deg) of the beam that is farthest from the horizon by its scan.
+double steepestBeam_deg(const scenario::ScanSpec& scan) {
+  const auto steeper = [](double a, double b) { return std::abs(b) > std::abs(a) ? b : a; };
+  if (scan.kind == scenario::ScanKind::raster) {
+    const double half_deg = (scan.bars - 1) * scan.elevation_step_deg / 2;
+    return steeper(scan.elevation_deg - half_deg, scan.elevation_deg + half_deg);
+  }
+  if (scan.kind != scenario::ScanKind::dwell_list) return scan.elevation_deg;
+  double steepest_deg = 0;
+  for (const scenario::Dwell& dwell : scan.dwells)
+    steepest_deg = steeper(steepest_deg, scan.elevation_deg + dwell.elevation_deg);
+  return steepest_deg;
 }
 
 /// Description of the beam's motion in elevation; empty if it does not move.
@@ -62,13 +78,14 @@ double ElevationCut::operator()(double elevation_rad) const {
 }
 
 std::optional<ElevationCut> elevationCut(const scenario::Emitter& emitter, const scenario::BeamPose& beam) {
-  if (!radiatesCut(emitter) || emitter.antenna->view().kind == scenario::PatternKind::isotropic)
+  if (!isMarched(emitter, PeRadiator::pattern) ||
+      emitter.antenna->view().kind == scenario::PatternKind::isotropic)
     return std::nullopt;
   return ElevationCut{emitter.antenna, {beam.forward.z, beam.right.z, beam.up.z}, beam.steer_v};
 }
 
 void checkElevationCut(const scenario::Scenario& scenario, const scenario::Emitter& emitter) {
-  if (!radiatesCut(emitter)) return;
+  if (!isMarched(emitter, PeRadiator::pattern)) return;
   const std::string motion = motionInElevation(scenario, emitter);
   if (motion.empty()) return;
   throw Error(
@@ -76,6 +93,24 @@ void checkElevationCut(const scenario::Scenario& scenario, const scenario::Emitt
       fmt::format("emitter '{}': 'parabolic_equation': 'source' is pattern, which marches the beam at one "
                   "elevation, but {}; expected isotropic, or a beam that stays in elevation",
                   emitter.name, motion));
+}
+
+std::vector<std::string> tiltWarnings(const scenario::Scenario& scenario, const scenario::Emitter& emitter) {
+  if (!isMarched(emitter, PeRadiator::isotropic) ||
+      emitter.antenna->view().kind == scenario::PatternKind::isotropic)
+    return {};
+  const double tilt_deg = steepestBeam_deg(emitter.scan), width_deg = emitter.antenna->beamwidth_el_deg;
+  if (!(std::abs(tilt_deg) > width_deg / 2)) return {};
+  return {fmt::format(
+      "emitter '{}': 'parabolic_equation': the beam of {:g} degrees points {:g} degrees {} the horizon, but "
+      "the "
+      "field is marched from an isotropic source and weighed by the pattern towards the direct ray: rays "
+      "from the ground, which the beam hardly reaches, count as much, and lobes are too deep; {}",
+      emitter.name, width_deg, std::abs(tilt_deg), tilt_deg > 0 ? "above" : "below",
+      motionInElevation(scenario, emitter).empty()
+          ? "'parabolic_equation: {source: pattern}' marches the beam"
+          : "'source: pattern' takes only beams that stay in elevation; 'two_ray' weighs each ray by "
+            "itself")};
 }
 
 }  // namespace emscape::emfield

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "emscape/scenario/model/scenario.h"
 #include "emscape/scenario/model/snapshot.h"
@@ -25,5 +27,9 @@ std::optional<ElevationCut> elevationCut(const scenario::Emitter& emitter, const
 /// @throws Error (bad_input) at the emitter's settings if its model uses a cut and the beam moves in
 /// elevation, by its scan or towards the targets of radars
 void checkElevationCut(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
+
+/// A warning if the parabolic equation marches the field of an isotropic source for a beam that points more
+/// than half its width above or below the horizon by its scan: the rays it weighs alike are not.
+std::vector<std::string> tiltWarnings(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
 
 }  // namespace emscape::emfield

@@ -100,8 +100,7 @@ propagation::TerminalClutter terminalClutter(const Scenario& scenario, const Emi
   clutter.is_larger = ground.terminal_clutter_combine == propagation::ClutterCombination::larger;
   const double ground_msl_m =
       terrain == nullptr ? 0 : terrain->heightMsl_m(station.latitude_deg, station.longitude_deg);
-  clutter.at_transmitter = ground.terminal_clutter_ends == propagation::ClutterEnds::both &&
-                           station.height_msl_m - ground_msl_m <= ground.terminal_clutter_below_m;
+  clutter.at_transmitter = static_cast<float>(station.height_msl_m - ground_msl_m) <= clutter.below_m;
   return clutter;
 }
 
@@ -169,6 +168,8 @@ EmitterExcess planExcess(const PathInputs& inputs, const propagation::RadialInpu
     propagation::RadialExcess planned = model.radial(inputs, *radials);
     excess.model = planned.model;
     excess.march = std::make_shared<propagation::FieldMarch>(std::move(planned.march));
+    if (planned.steep)
+      excess.steep = std::make_shared<const propagation::SteepGround>(*std::move(planned.steep));
   }
   if (propagation::hasAirLoss(inputs.emitter)) {
     excess.air = propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), *air_tables);

@@ -8,6 +8,7 @@
 
 #include "emfield/columns/grid_columns.h"
 #include "emfield/columns/station.h"
+#include "emscape/propagation/steep_ground.h"
 #include "emscape/scenario/model/scenario.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "propagation/air/air_loss.h"
@@ -31,6 +32,7 @@ struct EmitterExcess {
   bool has_clutter = false;  ///< see hasClutter() and GroundPosts
   /// The pending march for the model's tables; null if they are complete, or if there are none.
   std::shared_ptr<propagation::FieldMarch> march;
+  std::shared_ptr<const propagation::SteepGround> steep;  ///< of the march; null: none
 
   /// Tables of model and air, in host memory; empty if not needed.
   std::shared_ptr<const std::vector<float>> model_tables, air_tables;

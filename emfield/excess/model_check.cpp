@@ -11,12 +11,16 @@
 #include "emfield/excess/elevation_cut.h"
 #include "emfield/excess/emitter_excess.h"
 #include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/emfield/solver/steep_ground.h"
 #include "propagation/clear_air/climate.h"
 #include "propagation/diffraction/diffraction.h"
 #include "propagation/itm/itm.h"
 #include "propagation/p528/p528.h"
 #include "propagation/parabolic_equation/air/path_air.h"
+#include "propagation/parabolic_equation/model.h"
+#include "propagation/path_column.h"
 #include "propagation/registry/model_info.h"
 #include "propagation/two_ray/two_ray.h"
 #include "scenario/scan/swept_antenna.h"
@@ -48,6 +52,31 @@ const SourceLocation& locationOf(InputOrigin origin, const Scenario& scenario, c
       return emitter.propagation.location;
   }
   return emitter.location;
+}
+
+/// Whether a model has fields beyond the horizon without troposcatter.
+bool lacksScatter(propagation::PropagationModel model) {
+  return model == propagation::PropagationModel::diffraction ||
+         model == propagation::PropagationModel::two_ray;
+}
+
+/// An emitter at the highest place of its platform.
+Station highestStation(const Scenario& scenario, const Emitter& emitter, const scenario::Terrain* terrain) {
+  const auto heightOf_m = [&](const scenario::TrackPoint& point) {
+    const scenario::SitePosition& site = point.position;
+    if (!site.height_agl_m) return site.height_msl_m ? *site.height_msl_m : *site.height_ellipsoid_m;
+    const float ground_m =
+        terrain != nullptr ? terrain->heightMsl_m(site.latitude_deg, site.longitude_deg) : 0;
+    return *site.height_agl_m + (std::isnan(ground_m) ? 0 : static_cast<double>(ground_m));
+  };
+  const std::vector<scenario::TrackPoint>& track =
+      scenario.platforms[static_cast<std::size_t>(emitter.platform)].track;
+  const auto highest = std::max_element(track.begin(), track.end(), [&](const auto& a, const auto& b) {
+    return heightOf_m(a) < heightOf_m(b);
+  });
+  const double height_m = heightOf_m(*highest);
+  return makeStation({highest->position.latitude_deg, highest->position.longitude_deg, height_m}, height_m,
+                     scenario.atmosphere);
 }
 
 /// A warning if the table of an interval's pattern is coarse for the beam; see scenario/scan/swept_antenna.h.
@@ -82,6 +111,7 @@ std::vector<std::string> checkModel(const Scenario& scenario, const Emitter& emi
   checkElevationCut(scenario, emitter);
   std::vector<std::string> warnings = coarseIntervals(scenario, emitter);
   for (std::string& warning : clutterWarnings(scenario, emitter)) warnings.push_back(std::move(warning));
+  for (std::string& warning : tiltWarnings(scenario, emitter)) warnings.push_back(std::move(warning));
   for (const propagation::InputFault& fault : model.check(emitterInputs(scenario, emitter))) {
     const std::string message = inModel(emitter, model.name, fault.message);
     if (fault.is_refused) {
@@ -106,16 +136,38 @@ std::vector<std::string> pathWarnings(const Emitter& emitter, const propagation:
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   std::vector<std::string> messages = model.warningMessages(warnings);
   for (std::string& warning : model.pathWarnings(inputs)) messages.push_back(std::move(warning));
-  const bool has_ducts = emitter.propagation.model == propagation::PropagationModel::parabolic_equation &&
-                         propagation::pathAir(inputs.emitter.atmosphere, inputs.site, 0).traps();
-  if (has_ducts && emitter.clutter && emitter.clutter->hasSurface()) {
-    messages.push_back(
-        "the air has ducts, which carry the echo of a target but not that of the surface: the clutter of "
-        "land "
-        "and sea is that of standard air, and ends at its horizon; beyond, detection is too good");
-  }
   for (std::string& message : messages) message = inModel(emitter, model.name, message);
   return messages;
+}
+
+std::vector<std::string> steepGroundWarnings(const SteepGrounds& grounds) {
+  const std::vector<SteepGrounds::value_type> emitters(grounds.begin(), grounds.end());
+  std::vector<std::string> texts(emitters.size());
+  parallelFor(static_cast<int>(emitters.size()), 1, [&](int begin, int end) {
+    for (int e = begin; e < end; ++e)
+      texts[static_cast<std::size_t>(e)] =
+          propagation::steepGroundWarning(emitters[static_cast<std::size_t>(e)].second);
+  });
+  std::vector<std::string> warnings;
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    if (!texts[e].empty()) warnings.push_back(steepGroundText(emitters[e].first, texts[e]));
+  }
+  return warnings;
+}
+
+std::string steepGroundText(const std::string& emitter, const std::string& text) {
+  return fmt::format("emitter '{}': 'parabolic_equation': {}", emitter, text);
+}
+
+void keepSteepest(SteepGrounds& kept, const std::string& emitter, const propagation::SteepGround& march) {
+  std::vector<propagation::SteepGround>& of_emitter = kept[emitter];
+  if (of_emitter.empty() || march.lostPart() > of_emitter.front().lostPart()) of_emitter = {march};
+}
+
+void keepSteepest(SteepGrounds& kept, const SteepGrounds& more) {
+  for (const auto& [emitter, marches] : more) {
+    for (const propagation::SteepGround& march : marches) keepSteepest(kept, emitter, march);
+  }
 }
 
 std::optional<double> lowestHeight_m(propagation::PropagationModel model) {
@@ -172,8 +224,76 @@ std::vector<std::string> smoothSurfaceWarnings(const Scenario& scenario, const E
       emitter.name, model.name, surface_m, lowest_m)};
 }
 
+std::vector<std::string> scatterWarnings(const Emitter& emitter, const propagation::PathInputs& inputs,
+                                         const propagation::ExcessColumn& column, double end_msl_m,
+                                         double loss_db) {
+  if (!lacksScatter(emitter.propagation.model)) return {};
+  const double scatter_db = propagation::troposcatterDb(inputs, column, end_msl_m);
+  if (!(loss_db > scatter_db)) return {};
+  return {inModel(
+      emitter, toString(emitter.propagation.model),
+      fmt::format(
+          "the loss over free space to a point {:.0f} km away and {:.0f} m above mean sea level is "
+          "{:.0f} dB; by troposcatter, which the model lacks, it would be {:.0f} dB (P.1812-8 eq. 44): "
+          "beyond the horizon the field is too weak; itm, p1812, p452, p528 and parabolic_equation "
+          "have it",
+          column.range_m / 1000, end_msl_m, loss_db, scatter_db))};
+}
+
+std::vector<std::string> farthestScatterWarnings(const Scenario& scenario, const Emitter& emitter,
+                                                 const scenario::Terrain* terrain,
+                                                 const GridColumns& columns) {
+  constexpr int kPosts = 64;
+  if (!lacksScatter(emitter.propagation.model)) return {};
+  const Station station = highestStation(scenario, emitter, terrain);
+  // Elsewhere on its track the emitter may have no ground below it, on which a smooth surface stands.
+  if (terrain != nullptr && propagation::modelInfo(emitter.propagation.model).on_smooth_surface &&
+      !scenario.ground.surface_msl_m &&
+      std::isnan(terrain->heightMsl_m(station.latitude_deg, station.longitude_deg)))
+    return {};
+  const propagation::PathInputs inputs =
+      pathInputs(scenario, emitter, {}, station, terrain, pathExtent(station, columns));
+  const double farthest_m = inputs.extent.farthest_m,
+               end_msl_m = std::max(inputs.extent.lowest_msl_m, inputs.surface_msl_m + 1);
+  std::vector<double> ranges_m(kPosts + 1);
+  for (int i = 0; i <= kPosts; ++i) ranges_m[static_cast<std::size_t>(i)] = farthest_m * i / kPosts;
+  const std::vector<float> smooth_msl_m(ranges_m.size(), static_cast<float>(inputs.surface_msl_m));
+  propagation::PathColumn path({ranges_m.data(), smooth_msl_m.data(), kPosts + 1}, farthest_m, end_msl_m);
+  const double loss_db = propagation::modelInfo(emitter.propagation.model).explain(inputs, path).loss_db;
+  return scatterWarnings(emitter, inputs, path.column(), end_msl_m, loss_db);
+}
+
 static bool hasSurfaceClutter(const Emitter& radar) {
   return radar.clutter && radar.clutter->hasSurface();
+}
+
+std::vector<std::string> ductedClutterWarnings(const Scenario& scenario, const Emitter& radar,
+                                               const Station& station) {
+  using propagation::PropagationModel;
+  constexpr double kMedian_percent = 50;
+  if (!hasSurfaceClutter(radar)) return {};
+  const propagation::ModelSettings& settings = radar.propagation;
+  const PropagationModel model = settings.model;
+  const bool is_p1812 = model == PropagationModel::p1812;
+  const double time_percent = is_p1812                          ? settings.p1812.time_percent
+                              : model == PropagationModel::p452 ? settings.p452.time_percent
+                                                                : kMedian_percent;
+  const bool has_ducts = model == PropagationModel::parabolic_equation &&
+                         propagation::pathAir(scenario.atmosphere, station, 0).traps();
+  if (!has_ducts && !(time_percent < kMedian_percent)) return {};
+  return {inModel(
+      radar, toString(model),
+      fmt::format(
+          "{}, which carry the echo of a target but not that of the surface: the clutter of land and sea is "
+          "that of standard air, and ends at its horizon; beyond, detection is too good",
+          has_ducts ? "the air has ducts"
+                    : fmt::format("losses of {:g} % of the time are those of ducts", time_percent)))};
+}
+
+std::vector<std::string> ductedClutterWarnings(const Scenario& scenario, const Emitter& radar,
+                                               const scenario::Terrain* terrain) {
+  if (!hasSurfaceClutter(radar)) return {};
+  return ductedClutterWarnings(scenario, radar, highestStation(scenario, radar, terrain));
 }
 
 std::vector<std::string> laterTripWarnings(const Scenario& scenario, const Emitter& radar,
@@ -195,23 +315,7 @@ std::vector<std::string> laterTripWarnings(const Scenario& scenario, const Emitt
 std::vector<std::string> laterTripWarnings(const Scenario& scenario, const Emitter& radar,
                                            const scenario::Terrain* terrain) {
   if (!hasSurfaceClutter(radar) || !radar.waveform) return {};
-  const auto heightOf_m = [&](const scenario::TrackPoint& point) {
-    const scenario::SitePosition& site = point.position;
-    if (!site.height_agl_m) return site.height_msl_m ? *site.height_msl_m : *site.height_ellipsoid_m;
-    const float ground_m =
-        terrain != nullptr ? terrain->heightMsl_m(site.latitude_deg, site.longitude_deg) : 0;
-    return *site.height_agl_m + (std::isnan(ground_m) ? 0 : static_cast<double>(ground_m));
-  };
-  const std::vector<scenario::TrackPoint>& track =
-      scenario.platforms[static_cast<std::size_t>(radar.platform)].track;
-  const auto highest = std::max_element(track.begin(), track.end(), [&](const auto& a, const auto& b) {
-    return heightOf_m(a) < heightOf_m(b);
-  });
-  const double height_m = heightOf_m(*highest);
-  return laterTripWarnings(
-      scenario, radar,
-      makeStation({highest->position.latitude_deg, highest->position.longitude_deg, height_m}, height_m,
-                  scenario.atmosphere));
+  return laterTripWarnings(scenario, radar, highestStation(scenario, radar, terrain));
 }
 
 double partAtSeaLevel(const std::vector<float>& heights_m) {

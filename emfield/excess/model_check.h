@@ -6,8 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "emfield/columns/grid_columns.h"
 #include "emfield/columns/station.h"
+#include "emscape/emfield/solver/steep_ground.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "propagation/column.h"
 #include "propagation/inputs.h"
 
 namespace emscape::emfield {
@@ -18,6 +21,12 @@ namespace emscape::emfield {
 std::vector<std::string> checkModels(const scenario::Scenario& scenario);
 /// The same for one emitter.
 std::vector<std::string> checkModel(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
+
+/// A text of propagation::steepGroundWarning() with its emitter's name.
+std::string steepGroundText(const std::string& emitter, const std::string& text);
+/// Keeps of each emitter the march that loses most, as keepSteepest(kept, its name, march) does of one.
+void keepSteepest(SteepGrounds& kept, const SteepGrounds& more);
+void keepSteepest(SteepGrounds& kept, const std::string& emitter, const propagation::SteepGround& march);
 
 /// Warnings that depend on an emitter's site and the extent of its paths.
 /// @param inputs   of the emitter's paths, including their extent
@@ -46,6 +55,30 @@ std::vector<std::string> seaWarnings(const scenario::Scenario& scenario, const s
 std::vector<std::string> smoothSurfaceWarnings(const scenario::Scenario& scenario,
                                                const scenario::Emitter& emitter,
                                                const scenario::Terrain& terrain);
+
+/// A warning if the field at a path's end is weaker than that by troposcatter, which the emitter's model
+/// lacks.
+/// @param column     of the path; its heights are not read
+/// @param end_msl_m  height of the path's end
+/// @param loss_db    over free space, by the model
+std::vector<std::string> scatterWarnings(const scenario::Emitter& emitter,
+                                         const propagation::PathInputs& inputs,
+                                         const propagation::ExcessColumn& column, double end_msl_m,
+                                         double loss_db);
+/// The same for the farthest and lowest point of a grid, over the smooth earth, from the highest place of the
+/// emitter's platform. @param terrain  may be null
+std::vector<std::string> farthestScatterWarnings(const scenario::Scenario& scenario,
+                                                 const scenario::Emitter& emitter,
+                                                 const scenario::Terrain* terrain,
+                                                 const GridColumns& columns);
+
+/// A warning if a radar's echoes are carried by ducts and the clutter of the surface is not.
+std::vector<std::string> ductedClutterWarnings(const scenario::Scenario& scenario,
+                                               const scenario::Emitter& radar, const Station& station);
+/// The same at the highest place of its platform. @param terrain  may be null
+std::vector<std::string> ductedClutterWarnings(const scenario::Scenario& scenario,
+                                               const scenario::Emitter& radar,
+                                               const scenario::Terrain* terrain);
 
 /// A warning if a radar sees surfaces beyond the region whose echoes of later trips arrive with those inside:
 /// their clutter is left out.

@@ -1,7 +1,5 @@
 #include "emfield/excess/path_posts.h"
 
-#include <cstring>
-
 #include "base/math/simd.h"
 
 namespace emscape::emfield {
@@ -31,6 +29,7 @@ void PathPosts::begin(PathLanes& paths) {
   if (!areRaised()) return;
   const GroundPosts& ground = obstacles_.ground;
   mirrored_m_ = HUGE_VALF;
+  nearest_end_m_ = *std::min_element(paths.last_m, paths.last_m + kPathLanes);
   for (int l = 0; l < kPathLanes; ++l) {
     chord_m_[l] = paths.distance_m[l] / (std::floor(paths.distance_m[l] / longest_chord_m_) + 1);
     const float part = chord_m_[l] / longest_chord_m_;  // the deviation grows by the cube
@@ -45,6 +44,8 @@ void PathPosts::begin(PathLanes& paths) {
       const double path_m = paths.exact_distance_m[l], at_m = ground.clutterPost_m(n, path_m);
       clutter_posts_[n].range_m[l] = isClutterAt(at_m, path_m) ? static_cast<float>(at_m) : HUGE_VALF;
     }
+    clutter_posts_[n].nearest_m =
+        *std::min_element(clutter_posts_[n].range_m, clutter_posts_[n].range_m + kPathLanes);
   }
 }
 
@@ -92,35 +93,48 @@ inline void PathPosts::readCrossings() {
   load(kOnColumns ? part_.rows : part_.columns, across_length);
   load(part_.length_m, length_m);
   load(paths_->last_m, last_m);
-  const Ints none{}, forward = none + 1;
-  const Floats from = length > 0 ? begin - part_.overlap : begin + part_.overlap;
+  Ints is_forward, is_long;
+  setAbove(length, zero, is_forward);
+  setAbove(length_m, zero, is_long);
+  Floats from;
+  choose(is_forward, begin - part_.overlap, begin + part_.overlap, from);
   const Ints cell = __builtin_convertvector(from, Ints);
   const Ints last = __builtin_convertvector(begin + length, Ints);
-  const Ints crossings = length > 0 ? last - cell : cell - last;
-  const Ints counts = length_m > 0 ? crossings : none;
-  const Ints first = length > 0 ? cell + 1 : cell, step = length > 0 ? forward : -forward;
-  const Floats per_length = counts > 0 ? 1 / length : zero;
+  const Ints is_back = ~is_forward, counts = (((last - cell) ^ is_back) - is_back) & is_long;
+  const Ints first = cell - is_forward, step = -2 * is_forward - 1;
+  Floats per_length;
+  choose(-counts >> 31, 1 / length, zero, per_length);
   int count[kPathLanes], most = 0;
-  std::memcpy(count, &counts, sizeof count);
+  store(counts, count);
   for (const int of_path : count) most = std::max(most, of_path);
   if (most > kMaxCrossings) {
     leave((1u << kPathLanes) - 1);
     return;
   }
   const float* const corner_msl_m = chord_->corner_msl_m;
-  const int row_posts = terrain_.rowPosts(), to_next_post = kOnColumns ? row_posts : 1;
-  for (int n = 0; n < most; ++n) {
+  const int to_next_post = kOnColumns ? terrain_.rowPosts() : 1;
+  // Copies of a number to all lanes, which take a store each where the processor's vectors are narrower.
+  const Ints none{}, next = none + 1, row_posts = none + terrain_.rowPosts();
+  const Floats first_m = zero + part_.first_m, base_m = zero + terrain_.base_msl_m(),
+               unused_m = zero - HUGE_VALF, halfway_m = last_m * (zero + 0.5f);
+  Ints number = none, ahead = none;
+  for (int n = 0; n < most; ++n, number += next, ahead += step) {
     Slot& slot = slots_[count_++];
     slot.on = kOnColumns ? PostOn::column : PostOn::row;
-    const Ints is_used = counts > n, line = first + (is_used ? n * step : none);
+    const Ints is_used = (number - counts) >> 31, line = first + (ahead & is_used);
     const Floats at_line = __builtin_convertvector(line, Floats), along = (at_line - begin) * per_length;
-    const Floats part = along > 0 ? (along < 1 ? along : one) : zero;
+    Ints is_before, is_after;
+    setAbove(zero, along, is_before);
+    setAbove(along, one, is_after);
+    Floats part;
+    choose(is_before, zero, along, part);
+    choose(is_after, one, part, part);
     const Floats across = across_begin + part * across_length;
     const Ints across_cell = __builtin_convertvector(across, Ints);
     const Ints post = kOnColumns ? across_cell * row_posts + line : line * row_posts + across_cell;
     int place[kPathLanes];
     float near_of[kPathLanes], next_of[kPathLanes];
-    std::memcpy(place, &post, sizeof place);
+    store(post, place);
 #pragma omp simd
     for (int l = 0; l < kPathLanes; ++l) {
       near_of[l] = corner_msl_m[place[l]];
@@ -130,9 +144,12 @@ inline void PathPosts::readCrossings() {
     load(near_of, near_msl_m);
     load(next_of, next_msl_m);
     const Floats to_next = across - __builtin_convertvector(across_cell, Floats);
-    const Floats above_m = near_msl_m + to_next * (next_msl_m - near_msl_m) - terrain_.base_msl_m();
-    store(is_used ? part_.first_m + part * length_m : last_m / 2, slot.range_m);
-    store(is_used ? above_m : zero - HUGE_VALF, slot.height_m);
+    const Floats above_m = near_msl_m + to_next * (next_msl_m - near_msl_m) - base_m;
+    Floats range_m, height_m;
+    choose(is_used, first_m + part * length_m, halfway_m, range_m);
+    choose(is_used, above_m, unused_m, height_m);
+    store(range_m, slot.range_m);
+    store(height_m, slot.height_m);
     if (!areRaised()) continue;
     store(at_line, kOnColumns ? slot.column : slot.row);
     store(across, kOnColumns ? slot.row : slot.column);
@@ -152,8 +169,14 @@ inline void PathPosts::readAt(const float* at_m) {
   load(part_.row, row);
   load(part_.columns, columns);
   load(part_.rows, rows);
-  const Floats within_m = range_m < HUGE_VALF ? length_m : zero;
-  const Floats along = within_m > 0 ? (range_m - part_.first_m) / within_m : zero;
+  const Floats infinite = zero + HUGE_VALF;
+  Ints range_bits, infinite_bits, is_used;
+  load(&range_m, range_bits);
+  load(&infinite, infinite_bits);
+  setAbove(length_m, zero, is_used);
+  is_used &= (range_bits - infinite_bits) >> 31;
+  Floats along;
+  choose(is_used, (range_m - part_.first_m) / length_m, zero, along);
   const Floats x = column + along * columns, y = row + along * rows;
   const Ints i = __builtin_convertvector(x, Ints), j = __builtin_convertvector(y, Ints);
   int place[kPathLanes];
@@ -178,8 +201,11 @@ inline void PathPosts::readAt(const float* at_m) {
   const Floats south = west + to_east * (east - west),
                north = west_north + to_east * (east_north - west_north);
   const Floats above_m = south + to_north * (north - south) - terrain_.base_msl_m();
-  store(within_m > 0 ? range_m : last_m / 2, slot.range_m);
-  store(within_m > 0 ? above_m : zero - HUGE_VALF, slot.height_m);
+  Floats used_m, height_m;
+  choose(is_used, range_m, last_m / 2, used_m);
+  choose(is_used, above_m, zero - HUGE_VALF, height_m);
+  store(used_m, slot.range_m);
+  store(height_m, slot.height_m);
   store(x, slot.column);
   store(y, slot.row);
 }
@@ -209,33 +235,21 @@ EMSCAPE_SIMD_CLONES void PathPosts::read(int block) {
     }
     if (is_any) readAt(at_m);
   }
-  if (areRaised()) readClutterPosts(block);
+  leaveUnknown(block, 0);
+}
+
+void PathPosts::leaveUnknown(int block, int first) {
   if (terrain_.slack_m()[block] < HUGE_VALF) return;
-  for (int n = 0; n < count_; ++n) {
+  for (int n = first; n < count_; ++n) {
     unsigned unknown = 0;
     for (int l = 0; l < kPathLanes; ++l) unknown |= (std::isnan(slots_[n].height_m[l]) ? 1u : 0u) << l;
     leave(unknown);
   }
 }
 
-inline void PathPosts::readClutterPosts(int block) {
-  const float* const last_m = obstacles_.posts.last_m();
-  const bool is_near = block == 0 || static_cast<double>(obstacles_.posts.first_m()[block]) <= kClutterFree_m;
-  if (!is_near && last_m[block] < mirrored_m_) return;
-  const float before_m = block > 0 ? last_m[block - 1] : -HUGE_VALF, end_m = last_m[block];
-  const float* const farthest_m = paths_->last_m;
-  for (const ClutterPosts& posts : clutter_posts_) {
-    float at_m[kPathLanes];
-    int any = 0;
-#pragma omp simd reduction(| : any)
-    for (int l = 0; l < kPathLanes; ++l) {
-      const float here_m = posts.range_m[l];
-      const bool is_here = (here_m > before_m) & ((here_m <= end_m) | (end_m >= farthest_m[l]));
-      at_m[l] = is_here ? here_m : HUGE_VALF;
-      any |= at_m[l] < HUGE_VALF ? 1 : 0;
-    }
-    if (any != 0) readAt(at_m);
-  }
+EMSCAPE_SIMD_CLONES void PathPosts::readClutterPost(int block, const float* at_m) {
+  readAt(at_m);
+  leaveUnknown(block, count_ - 1);
 }
 
 unsigned PathPosts::raise(int n, unsigned lanes) {

@@ -43,8 +43,12 @@ class PathPosts {
   bool areRaised() const { return cover_ != nullptr; }
 
   /// Reads a block: its crossings, regular posts near the emitter and, of raised profiles elsewhere, the
-  /// beginning of a chord and the posts for clutter.
+  /// beginning of a chord.
   void read(int block);
+  /// Reads those posts for clutter of the block that was read of which `isNeeded(ranges)` holds.
+  /// @param visit(n)  is called after each was read
+  template <class IsNeeded, class Visit>
+  void readClutterPosts(int block, const IsNeeded& isNeeded, const Visit& visit);
   /// Of the block that was read.
   int count() const { return count_; }
   const Slot& operator[](int n) const { return slots_[n]; }
@@ -70,7 +74,8 @@ class PathPosts {
   template <bool kOnColumns>
   void readCrossings();
   void readAt(const float* at_m);
-  void readClutterPosts(int block);
+  void readClutterPost(int block, const float* at_m);
+  void leaveUnknown(int block, int first);
 
   const SectorObstacles& obstacles_;
   const SectorTerrain& terrain_;
@@ -80,8 +85,10 @@ class PathPosts {
   float chord_m_[kPathLanes];   ///< length of the chords of their profiles
   float beside_m_[kPathLanes];  ///< largest distance from their profiles' paths
   float mirrored_m_ = 0;        ///< first of the posts for clutter before the receivers, of all paths
+  float nearest_end_m_ = 0;     ///< the smallest PathLanes::last_m
   struct ClutterPosts {
     float range_m[kPathLanes];  ///< infinite: none
+    float nearest_m;            ///< of all paths
   };
   std::vector<ClutterPosts> clutter_posts_;  ///< GroundPosts::clutterPost_m()
   const SectorChord* chord_ = nullptr;       ///< of the block that was read
@@ -89,5 +96,29 @@ class PathPosts {
   int count_ = 0;
   std::vector<Slot> slots_;
 };
+
+template <class IsNeeded, class Visit>
+inline void PathPosts::readClutterPosts(int block, const IsNeeded& isNeeded, const Visit& visit) {
+  const float* const last_m = obstacles_.posts.last_m();
+  const bool is_near = block == 0 || static_cast<double>(obstacles_.posts.first_m()[block]) <= kClutterFree_m;
+  if (!is_near && last_m[block] < mirrored_m_) return;
+  const float before_m = block > 0 ? last_m[block - 1] : -HUGE_VALF, end_m = last_m[block];
+  const float* const farthest_m = paths_->last_m;
+  for (const ClutterPosts& posts : clutter_posts_) {
+    if (end_m < nearest_end_m_ && posts.nearest_m > end_m) continue;
+    float at_m[kPathLanes];
+    int any = 0;
+#pragma omp simd reduction(| : any)
+    for (int l = 0; l < kPathLanes; ++l) {
+      const float here_m = posts.range_m[l];
+      const bool is_here = (here_m > before_m) & ((here_m <= end_m) | (end_m >= farthest_m[l]));
+      at_m[l] = is_here ? here_m : HUGE_VALF;
+      any |= at_m[l] < HUGE_VALF ? 1 : 0;
+    }
+    if (any == 0 || !isNeeded(at_m)) continue;
+    readClutterPost(block, at_m);
+    visit(count_ - 1);
+  }
+}
 
 }  // namespace emscape::emfield

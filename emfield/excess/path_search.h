@@ -57,7 +57,7 @@ class PathSearch {
     const auto visitOnce = [&](int block) {
       if (visited_in_[block] == number_) return;
       visited_in_[block] = number_;
-      if (mayExceed(block, boundOf, most)) visit<kBare>(block, valueOf, most);
+      if (mayExceed(block, boundOf, most)) visit<kBare>(block, boundOf, valueOf, most);
     };
     for (int l = 0; l < kPathLanes; ++l) {
       if (guess[l] < blocks) visitOnce(guess[l]);
@@ -137,32 +137,48 @@ class PathSearch {
     return is_any != 0;
   }
 
-  template <bool kBare, class ValueOf>
-  void visit(int block, const ValueOf& valueOf, PathMaxima& most) {
+  template <bool kBare, class BoundOf, class ValueOf>
+  void visit(int block, const BoundOf& boundOf, const ValueOf& valueOf, PathMaxima& most) {
     posts_.read(block);
-    for (int n = 0; n < posts_.count(); ++n) {
-      const PathPosts::Slot& slot = posts_[n];
-      unsigned doubtful = 0;
-      if (!kBare && posts_.areRaised()) {
-        const float cover_m = terrain_.cover_m()[block];
-        unsigned raised = 0;
-#pragma omp simd reduction(| : raised)
-        for (int l = 0; l < kPathLanes; ++l) {
-          const float highest = valueOf(l, slot.range_m[l], slot.height_m[l] + cover_m);
-          raised |= (highest > most.value[l] ? 1u : 0u) << l;
-        }
-        if (raised == 0) continue;
-        if (!(cover_m < HUGE_VALF)) posts_.leave(raised);
-        doubtful = posts_.raise(n, raised);
-      }
-#pragma omp simd
+    const int count = posts_.count();
+    for (int n = 0; n < count; ++n) visitPost<kBare>(n, block, valueOf, most);
+    if (!posts_.areRaised()) return;
+    // Posts for clutter are many, and each may be those of few paths: bounded at their own ranges first.
+    const float lowered_m = bounds_.blocks().lowered_m[block], tx_slope = bounds_.blocks().tx_slope[block];
+    const auto mayExceedAt = [&](const float* at_m) {
+      int is_any = 0;
+#pragma omp simd reduction(| : is_any)
       for (int l = 0; l < kPathLanes; ++l) {
-        const float value = valueOf(l, slot.range_m[l], slot.height_m[l]);
-        const bool is_more = value > most.value[l];
-        most.value[l] = is_more ? value : most.value[l];
-        most.block[l] = is_more ? block : most.block[l];
-        most.is_bound[l] = is_more ? static_cast<int>(doubtful >> l & 1) : most.is_bound[l];
+        const bool exceeds = boundOf(l, lowered_m, tx_slope, at_m[l], at_m[l]) > most.value[l];
+        is_any |= exceeds & (at_m[l] < HUGE_VALF);
       }
+      return is_any != 0;
+    };
+    posts_.readClutterPosts(block, mayExceedAt, [&](int n) { visitPost<kBare>(n, block, valueOf, most); });
+  }
+  template <bool kBare, class ValueOf>
+  void visitPost(int n, int block, const ValueOf& valueOf, PathMaxima& most) {
+    const PathPosts::Slot& slot = posts_[n];
+    unsigned doubtful = 0;
+    if (!kBare && posts_.areRaised()) {
+      const float cover_m = terrain_.cover_m()[block];
+      unsigned raised = 0;
+#pragma omp simd reduction(| : raised)
+      for (int l = 0; l < kPathLanes; ++l) {
+        const float highest = valueOf(l, slot.range_m[l], slot.height_m[l] + cover_m);
+        raised |= (highest > most.value[l] ? 1u : 0u) << l;
+      }
+      if (raised == 0) return;
+      if (!(cover_m < HUGE_VALF)) posts_.leave(raised);
+      doubtful = posts_.raise(n, raised);
+    }
+#pragma omp simd
+    for (int l = 0; l < kPathLanes; ++l) {
+      const float value = valueOf(l, slot.range_m[l], slot.height_m[l]);
+      const bool is_more = value > most.value[l];
+      most.value[l] = is_more ? value : most.value[l];
+      most.block[l] = is_more ? block : most.block[l];
+      most.is_bound[l] = is_more ? static_cast<int>(doubtful >> l & 1) : most.is_bound[l];
     }
   }
 

@@ -52,6 +52,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
     mechanisms_.clear();
     clutter_.clear();
     warnings_ = 0;
+    steep_.reset();
   }
   column_step_ = part.step;
   times.columns_ms += watch.lap_ms();
@@ -74,6 +75,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   if (hasExcess(scenario, emitter)) {
     EmitterExcess excess = planExcess(scenario, emitter, state.beam, station, terrain, columns);
     times.excess_ms += watch.lap_ms();
+    steep_ = excess.steep;
     if (excess.march != nullptr) times.marched_heights += excess.march->heights();
     marchTables(emitter, excess);
     times.march_ms += watch.lap_ms();

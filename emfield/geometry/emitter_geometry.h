@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "emfield/columns/column_geometry.h"
@@ -10,6 +11,7 @@
 #include "emfield/geometry/clutter_map.h"
 #include "emfield/ground/terrain_bounds.h"
 #include "emscape/base/unset_vector.h"
+#include "emscape/propagation/steep_ground.h"
 #include "emscape/scenario/model/emitter.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/scenario/terrain/terrain.h"
@@ -60,6 +62,8 @@ class EmitterGeometry {
   int columnStep() const { return column_step_; }
   /// Warning bits of the model on the paths: see warningMessages().
   unsigned warnings() const { return warnings_; }
+  /// EmitterExcess::steep.
+  const std::shared_ptr<const propagation::SteepGround>& steep() const { return steep_; }
 
   static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
   /// Bytes per voxel of an emitter: its excess, its reflected ray and its mechanism, if its model has them,
@@ -95,6 +99,7 @@ class EmitterGeometry {
   std::vector<ClutterCell> clutter_;  ///< empty: no surface clutter
   long long unknown_columns_ = 0;
   unsigned warnings_ = 0;
+  std::shared_ptr<const propagation::SteepGround> steep_;
   int column_step_ = 1;
 };
 

@@ -25,7 +25,11 @@ class ColumnPosts {
   /// @param at_crossings  false: regular posts
   EMSCAPE_HD ColumnPosts(const Station& station, const GroundPosts& ground, const FastInverse& path,
                          bool at_crossings)
-      : station_(station), ground_(ground), path_(path), around_(RasterChord{}) {
+      : station_(station),
+        ground_(ground),
+        path_(path),
+        chords_(chordsOf(station, ground, path)),
+        around_(RasterChord{}) {
     if (!at_crossings || ground.is_smooth) regular_chords_ = ~0ull;
   }
 
@@ -38,62 +42,28 @@ class ColumnPosts {
   template <class Skips, class Visit>
   EMSCAPE_HD bool each(const Skips& skips, const Visit& visit) {
     const int regular = ground_.lastBefore(path_.distance_m) + 1;
-    const Chords of_path = chords();
     ClutterPosts clutter(ground_, path_.distance_m);
-    for (int n = 0; n < of_path.count; ++n) {
-      const double begin_m = n * of_path.length_m;
-      const bool is_last = n + 1 == of_path.count;
+    for (int n = 0; n < chords_.count; ++n) {
+      const double begin_m = n * chords_.length_m;
+      const bool is_last = n + 1 == chords_.count;
       const TerrainChord& chord = chordOf(n);
-      const bool with_crossings = !isRegular(n) && canCross(chord.in_raster, of_path.length_m);
+      const bool with_crossings = !isRegular(n) && canCross(chord.in_raster, chords_.length_m);
       const bool with_beginning = n > 0 && regular_chords_ != ~0ull;
       if (!with_crossings) regular_chords_ |= bitOf(n);
       OtherPosts others{ground_.ranges_m, ground_.has_clutter ? &clutter : nullptr};
       others.regular = n == 0 ? 1 : ground_.lastBefore(begin_m) + 1;
-      others.end = is_last ? regular : ground_.lastBefore(begin_m + of_path.length_m) + 1;
+      others.end = is_last ? regular : ground_.lastBefore(begin_m + chords_.length_m) + 1;
       if (with_crossings) others.end = n == 0 ? smaller(ground_.near_count, others.end) : 0;
       if (with_beginning && others.regular < others.end && ground_.ranges_m[others.regular] <= begin_m)
         ++others.regular;
-      others.end_m = is_last ? HUGE_VAL : begin_m + of_path.length_m;
+      others.end_m = is_last ? HUGE_VAL : begin_m + chords_.length_m;
       others.range_m = with_beginning ? begin_m : others.next();
-      if (!eachOf(chord, with_crossings, begin_m, of_path.length_m, others, skips, visit)) {
+      if (!eachOf(chord, with_crossings, begin_m, chords_.length_m, others, skips, visit)) {
         regular_chords_ |= bitOf(n);
         return false;
       }
     }
     return true;
-  }
-
-  /// Calls visit(PathPost) for some regular posts of the bare ground in their order: every second one, of
-  /// long paths some hundred.
-  template <class Visit>
-  EMSCAPE_HD void eachOfSome(const Visit& visit) {
-    const int regular = ground_.lastBefore(path_.distance_m) + 1, step = larger(2, regular / 640);
-    const Chords of_path = chords();
-    const double* const ranges_m = ground_.ranges_m;
-    const float farthest_m = this->farthest_m();
-    for (int n = 0, i = 1; n < of_path.count; ++n) {
-      const double begin_m = n * of_path.length_m;
-      const int end = n + 1 < of_path.count ? ground_.lastBefore(begin_m + of_path.length_m) + 1 : regular;
-      if (i >= end) continue;
-      const TerrainChord& chord = chordOf(n);
-      const bool is_simple = !ground_.is_smooth && chord.in_raster.corner_msl_m != nullptr;
-      const float* const corner_msl_m = chord.in_raster.corner_msl_m;
-      const int row_posts = chord.in_raster.row_posts;
-      const Parabola<float> column = chord.in_raster.column, row = chord.in_raster.row;
-      const auto from_m = static_cast<float>(begin_m), per_m = static_cast<float>(chord.in_raster.per_m);
-      EMSCAPE_UNROLL_BY(2)
-      for (; i < end; i += step) {
-        const float range_m = fminf(static_cast<float>(ranges_m[i]), farthest_m);
-        float height_msl_m = 0;
-        if (is_simple) {
-          const float part = (range_m - from_m) * per_m;
-          height_msl_m = bilinearHeight(corner_msl_m, row_posts, column.at(part), row.at(part));
-        }
-        if (!is_simple || std::isnan(height_msl_m))
-          height_msl_m = ground_.is_smooth ? 0 : heightAt(chord, ranges_m[i]);
-        visit(PathPost{range_m, height_msl_m});
-      }
-    }
   }
 
   /// After each().
@@ -119,12 +89,11 @@ class ColumnPosts {
       addRegular(regular);
       return found;
     }
-    const Chords of_path = chords();
-    const double chord_m = of_path.length_m;
-    const int n = smaller(static_cast<int>(static_cast<double>(range_m) / chord_m), of_path.count - 1);
+    const double chord_m = chords_.length_m;
+    const int n = smaller(static_cast<int>(static_cast<double>(range_m) / chord_m), chords_.count - 1);
     const double begin_m = n * chord_m;
     if (n > 0) add(begin_m);
-    if (n + 1 < of_path.count) add(begin_m + chord_m);
+    if (n + 1 < chords_.count) add(begin_m + chord_m);
     if (isRegular(n)) {
       addRegular(regular);
       return found;
@@ -184,7 +153,7 @@ class ColumnPosts {
       ++regular;
       return regular_m;
     }
-    EMSCAPE_NOINLINE EMSCAPE_HD double nextClutter() {
+    EMSCAPE_DEVICE_CALL EMSCAPE_HD double nextClutter() {
       const double here_m = clutter->next_m;
       clutter->advance();
       return here_m;
@@ -237,9 +206,10 @@ class ColumnPosts {
     int most_origin_ = 0, few_origin_ = 0, most_step_ = 0, few_step_ = 0;
   };
 
-  EMSCAPE_HD Chords chords() const {
-    if (ground_.is_smooth) return {1, path_.distance_m};
-    const TerrainWalk walk(station_, ground_.terrain, path_);
+  static EMSCAPE_HD Chords chordsOf(const Station& station, const GroundPosts& ground,
+                                    const FastInverse& path) {
+    if (ground.is_smooth) return {1, path.distance_m};
+    const TerrainWalk walk(station, ground.terrain, path);
     return {walk.chords(), walk.chord_m()};
   }
 
@@ -256,22 +226,22 @@ class ColumnPosts {
   }
 
   /// Height of the bare ground above mean sea level (m); NaN over missing terrain.
-  EMSCAPE_NOINLINE EMSCAPE_HD float heightAt(const TerrainChord& chord, double range_m) const {
+  EMSCAPE_HD float heightAt(const TerrainChord& chord, double range_m) const {
     float height_msl_m = chord.in_raster.corner_msl_m != nullptr ? chord.in_raster.heightAt(range_m) : NAN;
     if (std::isnan(height_msl_m)) height_msl_m = amongRasters(ground_, chord, range_m);
     return height_msl_m;
   }
   // Separate calls, so that their registers are not part of those of the loops over posts.
-  EMSCAPE_NOINLINE static EMSCAPE_HD void prepare(const Station& station, const GroundPosts& ground,
-                                                  const FastInverse& path, int n, TerrainChord& chord) {
+  EMSCAPE_DEVICE_CALL static EMSCAPE_HD void prepare(const Station& station, const GroundPosts& ground,
+                                                     const FastInverse& path, int n, TerrainChord& chord) {
     chord = TerrainWalk(station, ground.terrain, path).chord(n);
   }
-  EMSCAPE_NOINLINE static EMSCAPE_HD float amongRasters(const GroundPosts& ground, const TerrainChord& chord,
-                                                        double range_m) {
+  EMSCAPE_DEVICE_CALL static EMSCAPE_HD float amongRasters(const GroundPosts& ground,
+                                                           const TerrainChord& chord, double range_m) {
     return chord.heightAmongRasters(ground.terrain, range_m);
   }
-  EMSCAPE_NOINLINE EMSCAPE_HD float clutterAt(const TerrainChord& chord, double range_m,
-                                              float ground_msl_m) const {
+  EMSCAPE_DEVICE_CALL EMSCAPE_HD float clutterAt(const TerrainChord& chord, double range_m,
+                                                 float ground_msl_m) const {
     if (!isClutterAt(range_m, path_.distance_m)) return 0;
     const double part = (range_m - chord.in_raster.begin_m) * chord.in_raster.per_m;
     const float cover_m = ground_.terrain.coverAt(chord.position.latitude_rad.at(part),
@@ -284,40 +254,28 @@ class ColumnPosts {
     return chord.corner_msl_m != nullptr && ChordCrossings(chord).count() <= ground_.maxCrossings(chord_m);
   }
 
-  /// The crossings with columns or with rows, one after another.
-  /// @tparam kStraight  of the lines of which there are more: see LineCrossings::partOfStraight()
-  template <bool kStraight>
-  struct Crossings {
+  /// The lines that a chord crosses most often, one after another.
+  struct MostLines {
     LineCrossings lines;
     int step;  ///< between the raster's posts of two lines
     float inverse, bend;
-    int n = 0, line = 0;
-    float part = 2;  ///< of the chord; 2: no further one
+    int n = 0, line;
 
-    EMSCAPE_HD Crossings(const LineCrossings& of, int step_)
+    EMSCAPE_HD MostLines(const LineCrossings& of, int step_)
         : lines(of),
           step(step_),
           inverse(approximateReciprocal(of.coordinate.c[1])),
-          bend(4 * of.coordinate.c[2] * inverse) {}
-    EMSCAPE_HD void begin(int first) {
-      n = first;
-      if (n < lines.count) line = lines.line<kStraight>(n);
-      find();
+          bend(4 * of.coordinate.c[2] * inverse),
+          line(of.line<true>(0)) {}
+    EMSCAPE_HD void advance(int count) {
+      n += count;
+      line += count * lines.step;
     }
-    /// As begin(n + 1).
-    EMSCAPE_HD void advance() {
-      ++n;
-      line += kStraight || n < lines.before_turn ? lines.step : n == lines.before_turn ? 0 : -lines.step;
-      find();
-    }
-    EMSCAPE_HD float partOfLine(int of_line) const {
-      if (!kStraight) return partOf(lines, n < lines.before_turn, of_line);
+    /// See LineCrossings::partOfStraight().
+    EMSCAPE_HD float partOf(int of_line) const {
       const float to = (static_cast<float>(of_line) - lines.coordinate.c[0]) * inverse, b = bend * to;
       return fminf(fmaxf(to * (1 - b * (0.25f - b * (0.125f - b * 0.078125f))), 0), 1);
     }
-
-   private:
-    EMSCAPE_HD void find() { part = n < lines.count ? partOfLine(line) : 2; }
   };
 
   /// The posts of a chord in their order.
@@ -334,25 +292,35 @@ class ColumnPosts {
     const bool by_columns = crossings.columns.count >= crossings.rows.count;
     const int row_posts = crossings.row_posts;
     const float* const corner_msl_m = crossings.corner_msl_m;
-    Crossings<true> most(by_columns ? crossings.columns : crossings.rows, by_columns ? 1 : row_posts);
-    Crossings<false> few(by_columns ? crossings.rows : crossings.columns, by_columns ? row_posts : 1);
+    MostLines most(by_columns ? crossings.columns : crossings.rows, by_columns ? 1 : row_posts);
+    const LineCrossings across(by_columns ? crossings.rows : crossings.columns);
+    const int direction = most.lines.step, lines = with_crossings ? most.lines.count : 0;
+    const int step_across = by_columns ? row_posts : 1;
     TilesAlong tiles;
-    if (with_crossings) {
-      most.begin(0);
-      few.begin(0);
-      tiles = TilesAlong(ground_, corner_msl_m, by_columns);
-    }
+    if (with_crossings) tiles = TilesAlong(ground_, corner_msl_m, by_columns);
+    /// On a line, at a coordinate along it.
+    const auto heightOn = [&](int line, int line_step, float at, int step_along) {
+      const int cell = static_cast<int>(at);
+      const float* const near = corner_msl_m + (line * line_step + cell * step_along);
+      return lerp(near[0], near[step_along], at - static_cast<float>(cell));
+    };
     const bool is_raised = ground_.is_raised;
     float other_m = others.range(), unknown = 0;
+    const auto visitPost = [&](PathPost post, double exact_m) {
+      if (is_raised) {
+        post.raised_m = clutterAt(chord, exact_m, post.height_msl_m);
+        post.height_msl_m += post.raised_m;
+      }
+      visit(post);
+    };
     float reached = 0;  // part of the chord
     int untried = 1;    // tiles to go through, after one that is not skipped
     do {
-      float end = 2;  // as far as to the end of a tile
-      while (tiles.areKnown() && most.n < most.lines.count) {
-        const int direction = most.lines.step;
-        const int count = smaller(tiles.linesFrom(most.line, direction), most.lines.count - most.n);
-        end = most.partOfLine(most.line + direction * (count - 1));
-        const LineCrossings& across = few.lines;
+      float end = 2;             // as far as to the end of a tile
+      int end_line = lines + 1;  // with a last step to the end of the chord
+      while (tiles.areKnown() && most.n < lines) {
+        const int count = smaller(tiles.linesFrom(most.line, direction), lines - most.n);
+        end = most.partOf(most.line + direction * (count - 1));
         const int cell = static_cast<int>(across.coordinate.at(reached));
         const int end_cell = static_cast<int>(across.coordinate.at(end));
         const float to_m = rangeAt(end);
@@ -360,45 +328,53 @@ class ColumnPosts {
             (across.turn > reached && across.turn < end) ||
             !skips(rangeAt(reached), to_m, tiles.highest_m(most.line, direction, cell, end_cell));
         if (isForAnyLane(is_needed)) {  // threads of a warp remain together
-          const int more = smaller(count + (untried - 1) * HighestOfTiles::kCells, most.lines.count - most.n);
-          end = most.partOfLine(most.line + direction * (more - 1));
+          end_line = smaller(most.n + count + (untried - 1) * HighestOfTiles::kCells, lines);
+          end = most.partOf(most.line + direction * (end_line - most.n - 1));
           untried = smaller(2 * untried, 4);
           break;
         }
         untried = 1;
         reached = end;
         end = 2;
-        most.begin(most.n + count);
-        few.begin(across.countBefore(reached, end_cell));
+        most.advance(count);
         while (other_m <= to_m) other_m = others.advance();
       }
+      // From one line to the next one, with the crossings of others between; the chord is straight in a cell.
+      float part = reached, at = across.coordinate.at(part);
+      int cell = static_cast<int>(at);
       EMSCAPE_UNROLL_BY(1)
-      for (;;) {
-        const bool is_few = few.part < most.part;
-        const float part = is_few ? few.part : most.part;
-        const bool is_crossing = part <= end && part < 2;
-        PathPost post{is_crossing ? rangeAt(part) : HUGE_VALF, 0};
-        auto exact_m = static_cast<double>(post.range_m);
-        if (other_m <= post.range_m) {
-          if (!is_crossing && (end < 2 || other_m == HUGE_VALF)) break;
-          exact_m = others.range_m;
-          post = {fminf(other_m, farthest_m), ground_.is_smooth ? 0 : heightAt(chord, exact_m)};
-          other_m = others.advance();
-        } else {
-          const Parabola<float> coordinate = is_few ? most.lines.coordinate : few.lines.coordinate;
-          const float at = coordinate.at(part);
-          const int cell = static_cast<int>(at), across = is_few ? most.step : few.step;
-          const float* const near =
-              corner_msl_m + ((is_few ? few.line * few.step : most.line * most.step) + cell * across);
-          post.height_msl_m = lerp(near[0], near[across], at - static_cast<float>(cell));
-          unknown += post.height_msl_m;
-          is_few ? few.advance() : most.advance();
+      for (; most.n < end_line; most.advance(1)) {
+        const bool is_line = most.n < lines;
+        const float next_part = is_line ? most.partOf(most.line) : 1;
+        const float next_at = across.coordinate.at(next_part);
+        const int next_cell = with_crossings ? static_cast<int>(next_at) : cell;
+        const float next_m = is_line ? rangeAt(next_part) : HUGE_VALF;
+        float height_msl_m = 0;
+        if (is_line) height_msl_m = heightOn(most.line, most.step, next_at, step_across);
+        EMSCAPE_UNROLL_BY(1)
+        while (cell != next_cell || other_m <= next_m) {
+          const int line = larger(cell, next_cell > cell ? cell + 1 : cell - 1);
+          const float here = fmaf((static_cast<float>(line) - at) * approximateReciprocal(next_at - at),
+                                  next_part - part, part);
+          PathPost post{cell != next_cell ? rangeAt(here) : next_m, 0};
+          auto exact_m = static_cast<double>(post.range_m);
+          if (other_m <= post.range_m) {
+            if (other_m == HUGE_VALF) break;
+            exact_m = others.range_m;
+            post = {fminf(other_m, farthest_m), ground_.is_smooth ? 0 : heightAt(chord, exact_m)};
+            other_m = others.advance();
+          } else {
+            post.height_msl_m = heightOn(line, step_across, most.lines.coordinate.at(here), most.step);
+            unknown += post.height_msl_m;
+            cell += next_cell > cell ? 1 : -1;
+          }
+          visitPost(post, exact_m);
         }
-        if (is_raised) {
-          post.raised_m = clutterAt(chord, exact_m, post.height_msl_m);
-          post.height_msl_m += post.raised_m;
-        }
-        visit(post);
+        part = next_part;
+        at = next_at;
+        if (!is_line) break;
+        unknown += height_msl_m;
+        visitPost({next_m, height_msl_m}, static_cast<double>(next_m));
       }
       reached = end;
     } while (reached < 2);
@@ -417,6 +393,7 @@ class ColumnPosts {
   const Station& station_;
   const GroundPosts& ground_;
   const FastInverse& path_;
+  Chords chords_;
   TerrainChord chord_[2];
   int kept_[2] = {-1, -1};  ///< which chords they are
   int around_chord_ = -1;

@@ -11,6 +11,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/link/path_budget.h"
+#include "scenario/scan/scan_sweep.h"
 
 namespace emscape::emfield {
 namespace {
@@ -30,18 +31,25 @@ double freeSpaceDensity_wm2(const Emitter& emitter, const scenario::BeamPose& be
          (4 * kPi * distance_m * distance_m);
 }
 
+/// Whether an emitter radiates at some time of a duration.
+bool radiates(const scenario::Snapshot& snapshot, const Emitter& emitter, double duration_s) {
+  return duration_s > 0 &&
+         !scenario::activeTimes(*snapshot.scenario, emitter, snapshot.time_s, duration_s).empty();
+}
+
 }  // namespace
 
 std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int radar,
                                     const std::vector<int>& jammers, const scenario::Terrain* terrain,
-                                    std::string* warning) {
+                                    std::string* warning, double duration_s) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const EmitterState& at = snapshot.emitters[radar];
   const Station station = makeStation(at.position, at.height_msl_m, scenario.atmosphere);
   std::vector<JammerPath> all;
   for (int j : jammers) {
     const EmitterState& from = snapshot.emitters[j];
-    if (!from.active) continue;
+    if (scenario.emitters[j].platform == scenario.emitters[radar].platform) continue;
+    if (!from.active && !radiates(snapshot, scenario.emitters[j], duration_s)) continue;
     const Station jammer_station = makeStation(from.position, from.height_msl_m, scenario.atmosphere);
     Vec3d ray = lineTo(station, from.position);
     const double level_m = std::hypot(ray.x, ray.y);
@@ -54,7 +62,14 @@ std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int rada
       jammer.power_density_wm2 = alone();
     } else {
       try {
-        const PathBudget budget = pathBudget(snapshot, j, {at.position, at.height_msl_m},
+        scenario::Snapshot there;  // of a platform that comes in the course of the duration
+        const auto platform = static_cast<std::size_t>(scenario.emitters[j].platform);
+        const bool is_absent = !snapshot.platforms[platform].present;
+        if (is_absent) {
+          there = snapshot;
+          there.platforms[platform].present = true;
+        }
+        const PathBudget budget = pathBudget(is_absent ? there : snapshot, j, {at.position, at.height_msl_m},
                                              scenario.emitters[j].propagation.model, terrain);
         jammer.power_density_wm2 = dbToRatio(budget.find("power_density_dbwm2")->value);
         ray.z += refractionLift_m(station, budget.profile.range_m, level_m, from.height_msl_m);

@@ -89,6 +89,7 @@ std::optional<double> Detection::firstDetection_s() const {
 
 LinkReport computeLinks(const std::shared_ptr<const Scenario>& scenario, const scenario::Terrain* terrain,
                         const LinkOptions& options, const ProgressSink& progress) {
+  if (progress) progress("links", 0);
   LinkReport report;
   std::vector<ReceiverListener> listeners;
   for (const int receiver : options.receivers) listeners.emplace_back(*scenario, receiver, options);
@@ -128,11 +129,21 @@ LinkReport computeLinks(const std::shared_ptr<const Scenario>& scenario, const s
   if (const std::string outside = scenario::outsideClockText(options.times_s, scenario->clock);
       !outside.empty())
     addOnce({outside});
-  for (const ReceiverListener& listener : listeners) addOnce(listener.warnings);
+  SteepGrounds steep;
+  const auto addSteep = [&](const SteepGrounds& more) {
+    for (const auto& [emitter, marches] : more)
+      steep[emitter].insert(steep[emitter].end(), marches.begin(), marches.end());
+  };
+  for (const ReceiverListener& listener : listeners) {
+    addOnce(listener.warnings);
+    addSteep(listener.steep);
+  }
   for (TargetWatcher& watcher : watchers) {
     addOnce(watcher.warnings);
+    addSteep(watcher.steep);
     report.detections.push_back(std::move(watcher.detection));
   }
+  addOnce(steepGroundWarnings(steep));
   return report;
 }
 

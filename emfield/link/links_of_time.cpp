@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <iterator>
 
 #include "emfield/columns/station.h"
 #include "emfield/columns/two_rays.h"
+#include "emfield/excess/model_check.h"
 #include "emfield/link/path_report.h"
 #include "emfield/link/path_verdict.h"
 #include "emfield/link/target_view.h"
@@ -106,11 +109,25 @@ void fillPath(PathRow& row, const scenario::Snapshot& snapshot, int emitter_inde
   row.path = pathVerdictOf(*budget);
 }
 
+/// A warning without figures, which change from time to time as the ends move.
+std::string wordsOf(const std::string& warning) {
+  std::string words;
+  std::copy_if(warning.begin(), warning.end(), std::back_inserter(words),
+               [](char c) { return std::strchr("0123456789.-", c) == nullptr; });
+  return words;
+}
+
+/// Keeps the first warning of each kind of a pair.
 void keepWarnings(std::vector<std::string>& all, const std::string& from, const std::string& to,
                   const PathBudget& budget) {
+  const std::string ends = fmt::format("'{}' to '{}': ", from, to);
   for (const std::string& warning : budget.warnings) {
-    const std::string line = fmt::format("'{}' to '{}': {}", from, to, warning);
-    if (std::find(all.begin(), all.end(), line) == all.end() && all.size() < 50) all.push_back(line);
+    const bool is_known = std::any_of(all.begin(), all.end(), [&](const std::string& known) {
+      if (known.compare(0, ends.size(), ends) != 0) return false;
+      const std::string other = known.substr(ends.size());
+      return other == warning || wordsOf(other) == wordsOf(warning);
+    });
+    if (!is_known && all.size() < 50) all.push_back(ends + warning);
   }
 }
 
@@ -179,6 +196,8 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
     refuse(scenario.emitters[emitter].name, own.name, snapshot.time_s, error);
   }
   keepWarnings(warnings, scenario.emitters[emitter].name, own.name, *wave.budget);
+  if (const auto& found = wave.budget->excess.steep)
+    keepSteepest(steep, scenario.emitters[emitter].name, *found);
   wave.is_present = from.active;
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
   Vec3d ray = lineTo(station, from.position);
@@ -328,7 +347,10 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
     }
     with_target = radar;
     scenes.giveBack(std::move(scene));
-    if (budget) keepWarnings(warnings, radar.name, target.name, *budget);
+    if (budget) {
+      keepWarnings(warnings, radar.name, target.name, *budget);
+      if (const auto& found = budget->excess.steep) keepSteepest(steep, radar.name, *found);
+    }
   }
   fillPath(row, snapshot, detection.radar, target.platform, budget ? &*budget : nullptr, is_unknown);
   row.look_pattern_db = budget ? budget->look_pattern_db.value_or(row.pattern_db) : 0;

@@ -10,6 +10,7 @@
 #include "emfield/radar/detection.h"
 #include "emscape/emfield/link/link.h"
 #include "emscape/emfield/link/path_budget.h"
+#include "emscape/emfield/solver/steep_ground.h"
 #include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::emfield {
@@ -25,6 +26,7 @@ class ReceiverListener {
 
   std::vector<Link> links;  ///< of the selected emitters in the band, on other platforms
   std::vector<std::string> warnings;
+  SteepGrounds steep;  ///< of each emitter the path that loses most
 
  private:
   /// An emitter's wave at the receiver.
@@ -75,6 +77,7 @@ class TargetWatcher {
 
   Detection detection;
   std::vector<std::string> warnings;
+  SteepGrounds steep;  ///< the path that loses most
 
  private:
   /// Looks at the target between the first time and another, the first look at the first time.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/text/quantity_text.h"
@@ -163,6 +164,22 @@ std::vector<std::string> rangeWarnings(const scenario::Waveform& waveform, doubl
   return warnings;
 }
 
+/// A warning if clutter above the noise counts as independent from pulse to pulse of those integrated.
+std::vector<std::string> steadyClutterWarnings(const Emitter& emitter, const RadarAtPoint& radar) {
+  if (!radar.clutter || emitter.clutter->mti || emitter.clutter->independent_samples ||
+      emitter.receiver.pulses < 2)
+    return {};
+  const double to_noise_db =
+      ratioToDb(dbToRatio(radar.clutter->surface_to_noise_db) + dbToRatio(radar.clutter->rain_to_noise_db));
+  if (!(to_noise_db > 0)) return {};
+  return {fmt::format(
+      "emitter '{}': clutter is {:.1f} dB above the noise and counts as independent in each of the {} pulses "
+      "integrated, as noise does: of clutter that changes more slowly, detection is too good; 'clutter: "
+      "{{independent_samples: 1}}' is that of clutter that stands still during these pulses, 'mti' filters "
+      "it",
+      emitter.name, to_noise_db, emitter.receiver.pulses)};
+}
+
 void addClutterTerms(const Emitter& emitter, const RadarAtPoint::Clutter& clutter,
                      std::vector<BudgetTerm>& terms) {
   const auto add = [&terms](const char* key, const char* label, double value, const std::string& note) {
@@ -190,22 +207,39 @@ void addClutterTerms(const Emitter& emitter, const RadarAtPoint::Clutter& clutte
   }
   terms.push_back({"sclnr_db", "echo over clutter and noise, one pulse", clutter.sclnr_db, "dB",
                    fmt::format("range cell of {:g} m", emitter.clutter->range_cell_m), Kind::sum});
+  if (const double loss_db = correlationLossDb(emitter); loss_db > 0) {
+    terms.push_back({"clutter_correlation_loss_db", "what clutter counts more than noise", loss_db, "dB",
+                     fmt::format("in detection: {} independent samples among {} pulses",
+                                 *emitter.clutter->independent_samples, emitter.receiver.pulses)});
+  }
 }
 
 void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const RadarAtPoint& radar,
-                   std::vector<BudgetTerm>& terms) {
+                   double pattern_db, std::vector<BudgetTerm>& terms) {
   const Emitter& emitter = scenario.emitters[emitter_index];
   const scenario::RadarReceiver& receiver = emitter.receiver;
-  const char* const look = scenario.output.radar_look == scenario::RadarAim::scan
-                               ? "beam where the scan has it"
-                               : "beam on the target";
+  const bool is_instant = scenario.output.interval.kind == scenario::IntervalKind::instant;
+  const char* const look = isFixed(emitter)                                         ? "fixed beam"
+                           : scenario.output.radar_look != scenario::RadarAim::scan ? "beam on the target"
+                           : is_instant ? "beam where the scan has it"
+                                        : "beam as close as the scan brings it in the interval";
+  if (radar.look_pattern_db && std::abs(*radar.look_pattern_db - pattern_db) > 0.005) {
+    terms.push_back({"look_pattern_db", "antenna pattern of the radar's look at the target",
+                     *radar.look_pattern_db, "dB",
+                     fmt::format("each way, in place of the {:.2f} dB toward the ray", pattern_db)});
+  }
   terms.push_back({"snr_db", "echo's signal-to-noise, one pulse", radar.snr_db, "dB",
                    fmt::format("there and back, {}; target of {:g} m2, noise figure {:g} dB, {}", look,
                                receiver.target_rcs_m2, receiver.noise_figure_db,
                                quantityText(receiver.bandwidth_hz, "Hz")),
                    Kind::sum});
   if (std::isfinite(radar.jammer_to_signal_db)) {
-    std::string note = "the beam on the target";
+    std::string note = isFixed(emitter) ? "the fixed beam" : "the beam on the target";
+    for (const PathJammer& jammer : radar.jamming.jammers) {
+      note += fmt::format("; '{}' {:.1f} dB", jammer.name, jammer.to_signal_db);
+      if (receiver.side_lobe_blanking)
+        note += fmt::format(", {:.0f} % of its pulses blanked", 100 * jammer.blanked_part);
+    }
     for (const Emitter& jammer : scenario.emitters) {
       if (jammer.kind != scenario::EmitterKind::jammer) continue;
       const double loss_db = polarizationLossDb(emitter, jammer);
@@ -215,8 +249,8 @@ void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const 
     terms.push_back({"jammer_to_signal_db", "jamming over the echo", radar.jammer_to_signal_db, "dB", note});
   }
   if (radar.clutter) addClutterTerms(emitter, *radar.clutter, terms);
-  const std::string settings =
-      fmt::format("{} pulses, Pfa {:g}, Swerling {}", receiver.pulses, receiver.pfa, receiver.swerling);
+  const std::string settings = fmt::format("{} pulse{}, Pfa {:g}, Swerling {}", receiver.pulses,
+                                           receiver.pulses == 1 ? "" : "s", receiver.pfa, receiver.swerling);
   const DetectionLosses losses = detectionLosses(emitter);
   if (losses.total_db() > 0) {
     terms.push_back({"detection_losses_db", "detection losses", losses.total_db(), "dB",
@@ -284,7 +318,7 @@ std::vector<BudgetTerm> termsOf(const scenario::Snapshot& snapshot, int emitter_
          Kind::sum});
   }
   if (!scenario.receivers.empty()) addReceiverTerms(scenario, emitter_index, level_db, terms);
-  if (radar) addRadarTerms(scenario, emitter_index, *radar, terms);
+  if (radar) addRadarTerms(scenario, emitter_index, *radar, budget.pointing.pattern_db, terms);
 
   const double wavelength = wavelength_m(emitter.frequency_hz);
   const double free_space_db =
@@ -380,8 +414,10 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   budget.pointing = pointingOf(emitter, state.beam, ray, budget.excess.reflection);
   budget.boresight_dbwm2 = boresightDensity_dbwm2(emitter, budget);
   budget.warnings = budget.excess.warnings;
-  for (std::string& warning : laterTripWarnings(scenario, emitter, station))
-    budget.warnings.push_back(std::move(warning));
+  for (std::vector<std::string>& warnings : std::array{laterTripWarnings(scenario, emitter, station),
+                                                       ductedClutterWarnings(scenario, by_model, station)}) {
+    for (std::string& warning : warnings) budget.warnings.push_back(std::move(warning));
+  }
   if (terrain != nullptr) {
     const float lowest_m = *std::min_element(profile.ground_msl_m.begin(), profile.ground_msl_m.end());
     for (std::string& warning :
@@ -399,7 +435,7 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
         "far-field formula is used nevertheless",
         geometry.slant_range_m, geometry.far_field_m));
   }
-  if (with_detection && emitter.waveform) {
+  if (with_detection && emitter.waveform && emitter.kind == scenario::EmitterKind::radar) {
     if (emitter.waveform->limits_detection)
       budget.unheard = unheardRange(*emitter.waveform, geometry.slant_range_m);
     for (std::string& warning : rangeWarnings(*emitter.waveform, geometry.slant_range_m))
@@ -408,8 +444,12 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   std::optional<RadarAtPoint> radar;
   if (with_detection && emitter.kind == scenario::EmitterKind::radar && state.active) {
     radar = radarAtPoint(snapshot, emitter_index, ray, budget, terrain);
+    for (std::string& warning : steadyClutterWarnings(emitter, *radar))
+      budget.warnings.push_back(std::move(warning));
     budget.look_pattern_db = radar->look_pattern_db;
+    budget.has_fixed_beam = isFixed(emitter);
     budget.jamming = radar->jamming;
+    budget.probability_in_any_range = radar->probability_in_any_range;
   }
   budget.terms = termsOf(snapshot, emitter_index, budget, radar);
   budget.verdict = verdictOf(budget);

@@ -1,9 +1,27 @@
 /// What decides at the end of a path, with how much is missing there.
 #pragma once
 
+#include <array>
+
+#include "emscape/emfield/link/path_budget.h"
 #include "emscape/emfield/link/path_cause.h"
 
 namespace emscape::emfield {
+
+/// What a signal would gain (dB) without one of the losses of its path.
+struct LossCause {
+  PathCause cause;
+  double gain_db;
+};
+
+/// Ground cover, terrain and pointing, in this order.
+/// @param pattern_db  gain of the antenna relative to its maximum, <= 0
+/// @param ways        1 for a signal, 2 for an echo
+std::array<LossCause, 3> lossesOf(const PathExcess& excess, double pattern_db, double ways);
+
+/// The jammer without which the others leave the most detection; of equal ones the stronger.
+/// @param jamming  with a jammer
+const PathJammer& decisiveJammer(const PathJamming& jamming);
 
 struct Decision {
   PathCause cause = PathCause::covered;

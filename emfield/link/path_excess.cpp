@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "emfield/columns/station.h"
@@ -57,13 +58,16 @@ PathCover coverOf(const propagation::ModelSettings& settings, const propagation:
 }  // namespace
 
 PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                      const scenario::BeamPose& beam, const PathProfile& profile,
+                      const scenario::BeamPose& beam, const PathProfile& given,
                       const scenario::Terrain* terrain) {
   PathExcess excess;
   excess.warnings = checkModel(scenario, emitter);
   const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   propagation::Atmosphere atmosphere = scenario.atmosphere;
-  atmosphere.k_factor = profile.k_factor;
+  atmosphere.k_factor = given.k_factor;
+  std::optional<PathProfile> even;
+  if (model.radial != nullptr && terrain != nullptr) even = withEvenPosts(given, atmosphere, *terrain);
+  const PathProfile& profile = even ? *even : given;
   const Station station = makeStation(profile.begin.position, profile.begin.height_msl_m, atmosphere);
   double end_msl_m = profile.end.height_msl_m;
   if (model.on_effective_earth) {
@@ -114,20 +118,36 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
     static_cast<propagation::Explanation&>(excess) = model.explain(inputs, over_ground);
     const propagation::Explanation all = model.explain(inputs, over_clutter);
     path.addWarnings(over_clutter.warnings());
+    excess.steep = all.steep;
     excess.clutter_db = all.loss_db - excess.loss_db;
     excess.add("clutter", "trees and buildings along the path", excess.clutter_db);
     excess.why = all.why;
+    if (emitter.propagation.model != propagation::PropagationModel::itm) return;
+    const propagation::ModelInfo& edges = propagation::modelInfo(propagation::PropagationModel::diffraction);
+    const double by_edges_db =
+        edges.explain(inputs, over_clutter).loss_db - edges.explain(inputs, over_ground).loss_db;
+    constexpr double kFar_db = 10;
+    if (std::abs(excess.clutter_db - by_edges_db) > kFar_db) {
+      excess.warnings.push_back(fmt::format(
+          "emitter '{}': trees and buildings on the path cost {:.1f} dB by 'itm' and {:.1f} dB by "
+          "'diffraction': near an end, ITM takes them for nothing while a line of sight between its posts is "
+          "left, and for a horizon as soon as none is; 'propagation: diffraction' has no such step",
+          emitter.name, excess.clutter_db + 0.0, by_edges_db));
+    }
   });
+  for (std::string& warning : scatterWarnings(emitter, inputs, path.column(), profile.end.height_msl_m,
+                                              excess.loss_db - std::max(excess.clutter_db, 0.0)))
+    excess.warnings.push_back(std::move(warning));
   const propagation::TerminalClutter terminal = terminalClutter(scenario, emitter, station, terrain);
   const auto end_agl_m = static_cast<float>(profile.end.height_msl_m) - profile.ground_msl_m.back();
   if (const int ends = terminal.ends(static_cast<float>(profile.range_m), end_agl_m); ends > 0) {
     double loss_db = static_cast<double>(terminal.lossDb(static_cast<float>(profile.range_m), end_agl_m));
     const double terrain_db = excess.loss_db;
+    const char* const around = ends > 1 ? "both ends" : "one end";
     if (terminal.is_larger) loss_db = std::max(loss_db - terrain_db, 0.0);
     excess.add("terminal_clutter",
-               fmt::format("clutter around {} (P.2108-1, {:g} % of locations{}{})",
-                           ends > 1 ? "both ends" : "one end", scenario.ground.terminal_clutter_percent,
-                           ends > 1 ? " of each" : "",
+               fmt::format("clutter around {} (P.2108-1, {:g} % of locations{}{})", around,
+                           scenario.ground.terminal_clutter_percent, ends > 1 ? " of each" : "",
                            terminal.is_larger ? ", what it has more than the terrain" : ""),
                loss_db);
     excess.clutter_db += loss_db;
@@ -135,16 +155,19 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
     if (!terminal.is_larger && !model.on_smooth_surface && terrain_db > kGrazing_db &&
         std::isfinite(terrain_db)) {
       excess.warnings.push_back(fmt::format(
-          "emitter '{}': terrain costs {:.1f} dB, and {:.1f} dB of P.2108-1 are added to it: on "
-          "measured paths that terrain blocks, such sums were 9 to 20 dB too high in the mean; 'ground: "
+          "emitter '{}': {} costs {:.1f} dB, and {:.1f} dB of P.2108-1 are added to it for clutter around "
+          "{}: "
+          "on measured paths that terrain blocks, such sums were 9 to 20 dB too high in the mean; 'ground: "
           "{{terminal_clutter_combine: larger}}' takes the larger of both",
-          emitter.name, terrain_db, loss_db));
+          emitter.name, terrain == nullptr ? "the smooth earth" : "terrain", terrain_db, loss_db, around));
     }
   }
   if (propagation::hasAirLoss(inputs.emitter)) {
     std::vector<float> tables;
     addAir(propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), tables), profile, excess);
   }
+  if (model.on_smooth_surface && terrain != nullptr && !scenario.ground.surface_msl_m)
+    excess.why += "; the surface is the ground below the emitter, and another with the ends exchanged";
   if (model.on_smooth_surface && profile.end.height_msl_m < inputs.surface_msl_m) {
     excess.warnings.push_back(fmt::format(
         "emitter '{}': the point is {:.0f} m below the smooth surface of '{}' ({:.0f} m above "

@@ -8,6 +8,8 @@
 #include "emfield/columns/station.h"
 #include "emfield/ground/read_posts.h"
 #include "emscape/base/error.h"
+#include "emscape/base/units.h"
+#include "propagation/diffraction/diffraction.h"
 #include "propagation/diffraction/knife_edge.h"
 #include "propagation/horizon/horizon.h"
 
@@ -43,11 +45,41 @@ PathObstacle obstacleAt(const PathProfile& profile, int post, double wavelength_
   obstacle.fresnel_radius_m = profile.fresnelRadius_m(post, wavelength_m);
   obstacle.nu = -std::sqrt(2.0) * obstacle.clearanceInFresnelRadii();
   obstacle.knife_edge_db = propagation::knifeEdgeDb(obstacle.nu);
-  const double bulge_m = profile.bulge_m(post);
   obstacle.is_cover = obstacle.cover_m > 0 && obstacle.clearance_m + obstacle.cover_m >= 0;
-  obstacle.is_earth_bulge = !obstacle.is_cover && obstacle.clearance_m < 0 &&
-                            obstacle.clearance_m + bulge_m >= 0 && bulge_m >= profile.relief_m(post);
   return obstacle;
+}
+
+/// Marks the obstacles that are there by the earth's curvature, from the loss of the path by delta-Bullington
+/// and that of the smooth earth below it.
+void markEarth(const PathProfile& profile, double wavelength_m, std::vector<PathObstacle>& obstacles) {
+  constexpr double kLittle = 0.25;  // of the loss
+  const bool is_in_sight = std::none_of(obstacles.begin(), obstacles.end(), [](const PathObstacle& obstacle) {
+    return obstacle.clearance_m < 0;
+  });
+  if (is_in_sight) return;
+  propagation::DiffractionParameters parameters;
+  parameters.frequency_hz = kSpeedOfLight / wavelength_m;
+  parameters.effective_earth_radius_m = profile.effective_earth_radius_m;
+  using Model = propagation::DiffractionModel<double>;
+  const double begin_m = profile.ray_msl_m.front(), end_m = profile.ray_msl_m.back();
+  const propagation::DeltaBullington<double> loss = propagation::deltaBullington(
+      propagation::diffractionModel<double>(parameters),
+      propagation::TerrainProfile{profile.ranges_m.data(), profile.ground_msl_m.data(), profile.count()},
+      begin_m, end_m);
+  // Of the antennas above the smooth earth, without what the model raises low ones by.
+  const auto horizonOf_m = [&](double effective_m, double antenna_m, float ground_m) {
+    const double lift_m = Model::raised_m(antenna_m, static_cast<double>(ground_m)) - antenna_m;
+    return std::sqrt(2 * profile.effective_earth_radius_m * std::max(effective_m - lift_m, 0.0));
+  };
+  if (profile.range_m <= horizonOf_m(loss.effective.tx_m, begin_m, profile.ground_msl_m.front()) +
+                             horizonOf_m(loss.effective.rx_m, end_m, profile.ground_msl_m.back()))
+    return;
+  const bool costs_little = loss.loss_db - loss.spherical_db < kLittle * loss.loss_db;
+  for (PathObstacle& obstacle : obstacles) {
+    const bool is_above = obstacle.clearance_m < 0 && !obstacle.is_cover;
+    obstacle.is_earth_bulge =
+        is_above && (costs_little || obstacle.clearance_m + profile.bulge_m(obstacle.post) >= 0);
+  }
 }
 
 void setRay(PathProfile& profile, const Station& station) {
@@ -69,12 +101,6 @@ void setRay(PathProfile& profile, const Station& station) {
 double PathProfile::fresnelRadius_m(int i, double wavelength_m) const {
   const double d1 = ranges_m[i], d2 = range_m - d1;
   return std::sqrt(wavelength_m * d1 * d2 / range_m);
-}
-
-double PathProfile::relief_m(int i) const {
-  const auto first_m = static_cast<double>(ground_msl_m.front()),
-             last_m = static_cast<double>(ground_msl_m.back());
-  return static_cast<double>(ground_msl_m[i]) - (first_m + (last_m - first_m) * ranges_m[i] / range_m);
 }
 
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
@@ -123,6 +149,28 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
   }
   if (terrain != nullptr) checkTerrain(profile, *terrain);
 
+  setRay(profile, station);
+  return profile;
+}
+
+PathProfile withEvenPosts(PathProfile profile, const propagation::Atmosphere& atmosphere,
+                          const scenario::Terrain& terrain) {
+  constexpr double kRounding = 1e-9;
+  const Station station = makeStation(profile.begin.position, profile.begin.height_msl_m, atmosphere);
+  const double spacings = profile.range_m / (postSpacing_m(&terrain) / 2);
+  const int steps = std::max(1, static_cast<int>(std::ceil(spacings - kRounding)));
+  std::vector<double> ranges_m;
+  for (int i = 0; i < steps; ++i) ranges_m.push_back(profile.range_m * i / steps);
+  std::vector<float> ground_msl_m(ranges_m.size());
+  readPostsCpu(station, groundPosts(&terrain, ranges_m),
+               {profile.range_m, std::sin(profile.azimuth_rad), std::cos(profile.azimuth_rad)}, 0, steps,
+               ground_msl_m.data());
+  ranges_m.push_back(profile.range_m);
+  ground_msl_m.push_back(profile.ground_msl_m.back());
+  profile.ranges_m = std::move(ranges_m);
+  profile.ground_msl_m = std::move(ground_msl_m);
+  profile.cover_m.clear();
+  checkTerrain(profile, terrain);
   setRay(profile, station);
   return profile;
 }
@@ -179,6 +227,7 @@ std::vector<PathObstacle> pathObstacles(const PathProfile& profile, double wavel
   crests.resize(std::min(crests.size(), kMaxCrests));
   std::sort(crests.begin(), crests.end(),
             [](const PathObstacle& a, const PathObstacle& b) { return a.range_m < b.range_m; });
+  markEarth(profile, wavelength_m, crests);
   return crests;
 }
 

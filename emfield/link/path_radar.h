@@ -9,11 +9,15 @@
 
 namespace emscape::emfield {
 
+/// True if a radar's antenna turns to no target: a fixed scan, of no array.
+bool isFixed(const scenario::Emitter& radar);
+
 /// The values of a voxel at that point, without the volume's floor.
 struct RadarAtPoint {
-  double snr_db = 0;                 ///< -infinity without an echo
-  double jammer_to_signal_db = 0;    ///< -infinity without jamming; 100 with jamming and without an echo
-  double detection_probability = 0;  ///< against clutter, noise and jamming
+  double snr_db = 0;                    ///< -infinity without an echo
+  double jammer_to_signal_db = 0;       ///< -infinity without jamming; 100 with jamming and without an echo
+  double detection_probability = 0;     ///< against clutter, noise and jamming
+  double probability_in_any_range = 0;  ///< the same without limits of range
   PathJamming jamming;
   /// Of a beam that follows the target: its gain towards it, relative to its maximum (dB), <= 0.
   std::optional<double> look_pattern_db;

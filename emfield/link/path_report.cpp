@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "emscape/base/units.h"
+#include "emscape/emfield/solver/steep_ground.h"
 
 namespace emscape::emfield {
 namespace {
@@ -18,6 +20,12 @@ std::string ofEnd(const PathEnd& end, double ground_msl_m, bool has_terrain) {
 }
 
 }  // namespace
+
+void tellSteepGround(PathBudget& budget) {
+  if (!budget.excess.steep) return;
+  for (std::string& warning : steepGroundWarnings({{budget.emitter, {*budget.excess.steep}}}))
+    budget.warnings.push_back(std::move(warning));
+}
 
 std::vector<ReportLine> geometryLines(const PathBudget& budget) {
   const PathGeometry& geometry = budget.geometry;

@@ -14,6 +14,10 @@ struct ReportLine {
   std::string text;
 };
 
+/// Adds to a path's warnings that of ground too steep for its march, of several plans
+/// (steepGroundWarnings()): for one path that is shown.
+void tellSteepGround(PathBudget& budget);
+
 /// The ends of the path and its geometry.
 std::vector<ReportLine> geometryLines(const PathBudget& budget);
 

@@ -11,6 +11,13 @@ namespace emscape::emfield {
 constexpr double kBeamMisses_db = -6;
 /// Probability from which on a verdict calls a target detected.
 constexpr double kDetected = 0.5;
+constexpr double kFree_radii = 0.6;  ///< clearance of a free path
+
+/// Whether an obstacle decides and is above the ray or close below it.
+bool isNear(const PathObstacle& obstacle);
+
+/// Whether the loss is that of the parabolic equation's floor, and may be larger.
+bool isAtFloor(const PathBudget& budget);
 
 /// Names the dominant cause: inactive emitter, jamming that takes the detection away, obstacle, antenna
 /// pattern, or distance.

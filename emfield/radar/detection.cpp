@@ -68,6 +68,35 @@ double upperGamma(int n, double t) {
   return sum;
 }
 
+/// Q(a, x) of any shape a > 0, x >= 0: the probability that a gamma variable of that shape exceeds x. By the
+/// series or the continued fraction within 1e-9, above a shape of 500 by Wilson and Hilferty's cube root
+/// within 1e-4.
+double gammaAbove(double a, double x) {
+  if (a > 500) {
+    const double deviation = 1 / (9 * a);
+    return std::erfc((std::cbrt(x / a) - 1 + deviation) / std::sqrt(2 * deviation)) / 2;
+  }
+  if (x <= 0) return 1;
+  const double density = std::exp(a * std::log(x) - x - logFactorial(a));  // x^a exp(-x) / Gamma(a + 1)
+  constexpr double kPrecision = 1e-10;
+  if (x < a + 1) {
+    double term = 1, sum = 1;
+    for (double n = a + 1; term > kPrecision * sum; ++n) sum += term *= x / n;
+    return std::max(0.0, 1 - density * sum);
+  }
+  // Lentz's evaluation.
+  double b = x + 1 - a, c = 1e300, d = 1 / b, fraction = d;
+  for (int n = 1; n < 1000; ++n) {
+    const double step = n * (a - n);
+    b += 2;
+    d = 1 / (step * d + b);
+    c = b + step / c;
+    fraction *= c * d;
+    if (std::fabs(c * d - 1) < kPrecision) break;
+  }
+  return density * a * fraction;
+}
+
 /// Shape of the negative binomial distribution of K; 0 for the Poisson distribution.
 double shapeOf(const Detector& detector) {
   switch (detector.swerling) {
@@ -290,7 +319,8 @@ double requiredSnrDb(const Detector& detector, scenario::DetectionMethod method,
   return requiredSnrDb(detector, probability);
 }
 
-DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMethod method, double loss_db)
+DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMethod method, double loss_db,
+                               bool blanks)
     : detector_(detector), method_(method), loss_db_(loss_db) {
   const double threshold = detectionThreshold(detector);
   std::optional<Albersheim> albersheim;
@@ -331,6 +361,60 @@ DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMeth
     const double before = i > 0 ? values[i] - values[i - 1] : 0;
     const double after = i + 1 < count ? values[i + 1] - values[i] : 0;
     knots_.push_back({float(values[i]), float(monotoneRise(before, after))});
+  }
+  if (blanks) addRows();
+}
+
+void DetectionCurve::addRows() {
+  const int pulses = detector_.pulses;
+  // Numbers of open pulses: all up to 12, then in steps of a seventh.
+  std::vector<int> numbers;
+  for (int n = 1; n < pulses; n = std::max(n + 1, int(n > 12 ? n * 1.15 : n))) numbers.push_back(n);
+  numbers.push_back(pulses);
+  constexpr int kVariances = BlankedCurveView::kVariances;
+  const auto thresholdOf = [this](int number) {
+    return detectionThreshold({detector_.swerling, number, detector_.false_alarm_probability});
+  };
+  constexpr double kAboveThreshold_db = 29;  // 0.999 of single pulses of noise
+  row_means_ =
+      1 + int(std::ceil((ratioToDb(thresholdOf(1)) + kAboveThreshold_db - kFirstMean_db) / kMeanStep_db));
+  const std::size_t size = std::size_t(kVariances) * row_means_;
+  std::vector<std::vector<double>> of_numbers;
+  for (const int number : numbers) {
+    const double threshold = thresholdOf(number);
+    std::vector<double>& values = of_numbers.emplace_back();
+    for (int v = 0; v < kVariances; ++v) {
+      const double shape = number * std::exp2(-v - BlankedCurveView::kLeast_octaves);
+      for (int i = 0; i < row_means_; ++i) {
+        const double mean = number * dbToRatio(kFirstMean_db + i * kMeanStep_db);
+        values.push_back(gammaAbove(shape, shape * threshold / mean));
+      }
+    }
+  }
+  // Down to one open pulse in 50 looks.
+  const int rows = 2 + int(double(BlankedCurveView::kRowsPerOctave) * std::log2(50.0 * pulses));
+  rows_.reserve(rows * size);
+  for (int row = 0; row < rows; ++row) {
+    const double open = std::exp2(-row / double(BlankedCurveView::kRowsPerOctave));
+    const double mean = pulses * open, reach = 8 * std::sqrt(mean * (1 - open)) + 8;
+    std::vector<double> weights(numbers.size());
+    for (int n = std::max(1, int(mean - reach)); n <= std::min(pulses, int(mean + reach)); ++n) {
+      const double probability =
+          open == 1 ? double(n == pulses)
+                    : std::exp(logFactorial(pulses) - logFactorial(n) - logFactorial(pulses - n) +
+                               n * std::log(open) + (pulses - n) * std::log1p(-open));
+      const std::size_t above = std::lower_bound(numbers.begin(), numbers.end(), n) - numbers.begin();
+      const double part =
+          numbers[above] == n ? 1 : double(n - numbers[above - 1]) / (numbers[above] - numbers[above - 1]);
+      weights[above] += part * probability;
+      if (part < 1) weights[above - 1] += (1 - part) * probability;
+    }
+    std::vector<double> values(size, 0.0);
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      if (weights[n] < 1e-9) continue;
+      for (std::size_t i = 0; i < size; ++i) values[i] += weights[n] * of_numbers[n][i];
+    }
+    rows_.insert(rows_.end(), values.begin(), values.end());
   }
 }
 

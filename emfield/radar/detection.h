@@ -11,6 +11,7 @@
 
 #include <vector>
 
+#include "base/math/fast_math.h"
 #include "emscape/base/host_device.h"
 #include "emscape/scenario/model/emitter.h"
 
@@ -118,18 +119,81 @@ struct DetectionCurveView {
   }
 };
 
+/// Probability that the sum of the open pulses of a look exceeds the threshold, which is that of their number
+/// over a mean noise, if each of the N pulses is open with the same probability, independently. The sum is a
+/// gamma variable of the mean and the variance of the open pulses.
+struct BlankedCurveView {
+  static constexpr float kRowsPerOctave = 4;
+  static constexpr int kVariances = 13,
+                       kLeast_octaves = -6;  ///< of variance over square of the mean: 2^-6..2^6
+  const float* probabilities = nullptr;      ///< of a row, those of the means of each variance
+  int rows = 0;                              ///< >= 2, from open parts of 1 down
+  int count = 0;                             ///< of means, >= 2
+  float first_db = 0, steps_per_db = 0;
+  float pulses = 1;  ///< N
+
+  /// @param open      part of the pulses (0..1)
+  /// @param mean_db   power of an open pulse over the noise which the threshold follows
+  /// @param variance  of the power of an open pulse, over the square of its mean
+  /// @accuracy 1e-2 absolute of the gamma variable's
+  EMSCAPE_HD float operator()(float open, float mean_db, float variance) const {
+    const float wanted = -kRowsPerOctave * fastLog2(open + 1e-30f);
+    const float index = wanted > 0 ? wanted : 0.0f;
+    const int row = int(index < float(rows - 2) ? index : float(rows - 2));
+    const float of_row = fastExp2(-float(row) / kRowsPerOctave);
+    const float of_next = of_row * 0.84089642f;  // 2^(-1/4)
+    const float above = ofRow(row, mean_db, variance), below = ofRow(row + 1, mean_db, variance);
+    const float part = (of_row - open) / (of_row - of_next);
+    const float between = above + (part > 0 ? part : 0.0f) * (below - above);
+    return open < of_next ? below * (open / of_next) : between;
+  }
+  /// With all pulses open.
+  EMSCAPE_HD float unblanked(float mean_db, float variance) const { return ofRow(0, mean_db, variance); }
+
+ private:
+  EMSCAPE_HD float ofRow(int row, float mean_db, float variance) const {
+    const float mean = within((mean_db - first_db) * steps_per_db, float(count - 1));
+    const float layer =
+        within(fastLog2(variance > 0 ? variance : 1e-30f) - float(kLeast_octaves), float(kVariances - 1));
+    const int i = int(mean < float(count - 2) ? mean : float(count - 2));
+    const int j = int(layer < float(kVariances - 2) ? layer : float(kVariances - 2));
+    const int low = (row * kVariances + j) * count + i, high = low + count;
+    const float t = mean - float(i), u = layer - float(j);
+    const float of_low = probabilities[low] + t * (probabilities[low + 1] - probabilities[low]);
+    const float of_high = probabilities[high] + t * (probabilities[high + 1] - probabilities[high]);
+    return of_low + u * (of_high - of_low);
+  }
+  EMSCAPE_HD static float within(float index, float last) {
+    const float not_below = index > 0 ? index : 0.0f;
+    return not_below < last ? not_below : last;
+  }
+};
+
 /// Holds the knots of a curve.
 class DetectionCurve {
  public:
   /// @param loss_db  shift of the curve to larger signal-to-noise ratios
+  /// @param blanks   with a curve of blanked pulses
   /// @throws Error (bad_input) for a detector outside the stated ranges
   explicit DetectionCurve(const Detector& detector,
                           scenario::DetectionMethod method = scenario::DetectionMethod::exact,
-                          double loss_db = 0);
+                          double loss_db = 0, bool blanks = false);
 
-  bool isOf(const Detector& detector, scenario::DetectionMethod method, double loss_db) const {
-    return detector == detector_ && method == method_ && loss_db == loss_db_;
+  bool isOf(const Detector& detector, scenario::DetectionMethod method, double loss_db, bool blanks) const {
+    return detector == detector_ && method == method_ && loss_db == loss_db_ && blanks == !rows_.empty();
   }
+
+  /// Without the loss.
+  BlankedCurveView blanked() const {
+    const int row = BlankedCurveView::kVariances * row_means_;
+    return {rows_.data(),
+            row > 0 ? int(rows_.size()) / row : 0,
+            row_means_,
+            float(kFirstMean_db),
+            float(1 / kMeanStep_db),
+            float(detector_.pulses)};
+  }
+  double loss_db() const { return loss_db_; }
 
   DetectionCurveView view() const {
     return {knots_.data(), int(knots_.size()), first_snr_db_, steps_per_db_};
@@ -141,6 +205,17 @@ class DetectionCurve {
   double loss_db_;
   std::vector<DetectionCurveView::Knot> knots_;
   float first_snr_db_ = 0, steps_per_db_ = 0;
+  static constexpr double kFirstMean_db = -10, kMeanStep_db = 0.25;
+  std::vector<float> rows_;  ///< of blanked()
+  int row_means_ = 0;
+
+  void addRows();
 };
+
+/// True if a target's echo is the same in all pulses of a look: also any that has one pulse.
+inline bool isSteadyInALook(const Detector& detector) {
+  return detector.pulses == 1 ||
+         (detector.swerling != Swerling::fast_exponential && detector.swerling != Swerling::fast_dominant);
+}
 
 }  // namespace emscape::emfield

@@ -61,8 +61,10 @@ struct LookCount {
   float everywhere = 1;  ///< number of passes
   const CountedArc* arcs = nullptr;
   int arc_count = 0;
+  /// Outside all arcs, where the beam is that of the nearest arc. 0: its passes there are counted otherwise.
+  float least = 1;
 
-  /// At least 1: outside all arcs the beam is that of the nearest arc.
+  /// At least LookCount::least.
   EMSCAPE_HD float towards(const Vec3f& direction) const {
     const float level = std::sqrt(direction.x * direction.x + direction.y * direction.y);
     const float length = std::sqrt(dot(direction, direction) + 1e-12f);
@@ -74,7 +76,7 @@ struct LookCount {
                              (direction.z < arc.sin_highest * length);
       times += is_inside ? arc.passes : 0.0f;
     }
-    return times < 1 ? 1.0f : times;
+    return times < least ? least : times;
   }
 };
 

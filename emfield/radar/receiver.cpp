@@ -54,7 +54,7 @@ double jammingToNoise_m2_w(const Emitter& radar, const Emitter& jammer) {
   const RadarReceiver& receiver = radar.receiver;
   const RadarLink link = radarLinkOf(radar);
   JammerLink jamming;
-  jamming.eirp_w = 4 * kPi;  // 1 W/m2 at 1 m
+  jamming.eirp_w = 4 * kPi * jammer.dutyCycle();  // 1 W/m2 at 1 m in its pulses
   jamming.frequency_hz = jammer.frequency_hz;
   jamming.bandwidth_hz = jammer.bandwidth_hz;
   jamming.radar_gain_dbi = radar.antenna->gain_dbi;
@@ -71,6 +71,17 @@ double requiredSnrDb(const Emitter& radar) {
   const RadarReceiver& receiver = radar.receiver;
   return requiredSnrDb(detectorOf(receiver), receiver.detection, requiredProbability(receiver)) +
          detectionLosses(radar).total_db();
+}
+
+double correlationLossDb(const Emitter& radar) {
+  const RadarReceiver& receiver = radar.receiver;
+  if (!radar.clutter || radar.clutter->independent_samples.value_or(receiver.pulses) >= receiver.pulses)
+    return 0;
+  Detector detector = detectorOf(receiver);
+  const double probability = requiredProbability(receiver);
+  const double of_pulses_db = requiredSnrDb(detector, receiver.detection, probability);
+  detector.pulses = *radar.clutter->independent_samples;
+  return std::max(requiredSnrDb(detector, receiver.detection, probability) - of_pulses_db, 0.0);
 }
 
 double requiredSignalToJammerDb(const Emitter& radar) {
@@ -105,14 +116,15 @@ std::shared_ptr<const DetectionCurve> detectionCurveOf(const Emitter& radar) {
   const Detector detector = detectorOf(radar.receiver);
   const scenario::DetectionMethod method = radar.receiver.detection;
   const double loss_db = detectionLosses(radar).total_db();
+  const bool blanks = radar.receiver.side_lobe_blanking.has_value();
   const std::lock_guard lock(mutex);
   known.erase(std::remove_if(known.begin(), known.end(), [](const auto& curve) { return curve.expired(); }),
               known.end());
   for (const auto& held : known) {
     const std::shared_ptr<const DetectionCurve> curve = held.lock();
-    if (curve && curve->isOf(detector, method, loss_db)) return curve;
+    if (curve && curve->isOf(detector, method, loss_db, blanks)) return curve;
   }
-  auto curve = std::make_shared<const DetectionCurve>(detector, method, loss_db);
+  auto curve = std::make_shared<const DetectionCurve>(detector, method, loss_db, blanks);
   known.push_back(curve);
   return curve;
 }

@@ -34,6 +34,12 @@ double requiredSnrDb(const scenario::Emitter& radar);
 /// The probability that requiredSnrDb() refers to.
 double requiredProbability(const scenario::RadarReceiver& receiver);
 
+/// What clutter counts more than noise (dB) in a detection, >= 0, if fewer of its samples are independent
+/// than pulses are integrated: the ratio of the signal-to-noise ratios per pulse that detection takes with as
+/// many pulses as there are independent samples and with all pulses.
+/// @see D. K. Barton, Radar Equations for Modern Radar, 2013, ch. 3: clutter detectability factor
+double correlationLossDb(const scenario::Emitter& radar);
+
 /// Signal-to-jammer ratio (dB) at which the radar burns through, after processing.
 double requiredSignalToJammerDb(const scenario::Emitter& radar);
 

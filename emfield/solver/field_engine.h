@@ -14,6 +14,7 @@
 #include "emfield/combine/occupancy.h"
 #include "emfield/solver/field_plan.h"
 #include "emscape/emfield/solver/field_solver.h"
+#include "emscape/propagation/steep_ground.h"
 #include "emscape/volume/volume.h"
 #include "scenario/terrain/view.h"
 
@@ -39,10 +40,11 @@ struct GeometryRequest {
 
 /// Findings of stages 1 and 2 for one emitter.
 struct GeometryResult {
-  long long unknown_columns = 0;      ///< columns whose path crosses missing terrain
-  std::vector<std::uint8_t> unknown;  ///< one per column, 0 or 1; empty: none is unknown
-  unsigned warnings = 0;              ///< of the excess model: see warningMessages()
-  long long near_voxels = 0;          ///< voxels nearer than the emitter's far field
+  long long unknown_columns = 0;                          ///< columns whose path crosses missing terrain
+  std::vector<std::uint8_t> unknown;                      ///< one per column, 0 or 1; empty: none is unknown
+  unsigned warnings = 0;                                  ///< of the excess model: see warningMessages()
+  std::shared_ptr<const propagation::SteepGround> steep;  ///< EmitterExcess::steep
+  long long near_voxels = 0;                              ///< voxels nearer than the emitter's far field
   int column_step = 1;  ///< every step-th column in each direction is computed, others are interpolated
   double every_column_ms = 0;  ///< time that every column would take, of the part that can be left out
 };

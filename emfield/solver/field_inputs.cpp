@@ -20,9 +20,9 @@ auto membersOf(const GeodeticPosition& position) {
 }
 auto membersOf(const propagation::Ground& ground) {
   const auto& [kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, sea_by_height,
-               terminal_clutter, percent, below_m, ends, combine, place] = ground;
+               terminal_clutter, percent, below_m, combine, place] = ground;
   return std::tie(kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, sea_by_height,
-                  terminal_clutter, percent, below_m, ends, combine);
+                  terminal_clutter, percent, below_m, combine);
 }
 auto membersOf(const propagation::Atmosphere& atmosphere) {
   const auto& [k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,
@@ -87,18 +87,20 @@ bool sameArcs(const std::vector<Arc>& a, const std::vector<Arc>& b) {
 }
 
 bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
-  return a.boresight_to_noise == b.boresight_to_noise && sameRays(a, b);
+  return a.boresight_to_noise == b.boresight_to_noise && a.duty == b.duty && sameRays(a, b);
 }
 
 bool sameTask(const RadarTask& a, const RadarTask& b) {
   // The jammers and the arcs are in RadarShare; sameLook() compares the look.
   const auto& [measure, reduction, look, look_arcs, look_arc_count, is_cumulative, looks, last_passes,
-               echo_root, factor, lowest, ceiling, unjammed, curve, clutter, heard, jammers, jammer_count] =
-      a;
+               echo_root, factor, lowest, ceiling, unjammed, curve, clutter, heard, blanker, jammers,
+               jammer_count] = a;
   return measure == b.measure && reduction == b.reduction && is_cumulative == b.is_cumulative &&
-         looks.everywhere == b.looks.everywhere && echo_root == b.echo_root && factor == b.factor &&
-         lowest == b.lowest && ceiling == b.ceiling && unjammed == b.unjammed && same(curve, b.curve) &&
-         same(clutter, b.clutter) && same(heard, b.heard);
+         looks.everywhere == b.looks.everywhere && looks.least == b.looks.least && echo_root == b.echo_root &&
+         factor == b.factor && lowest == b.lowest && ceiling == b.ceiling && unjammed == b.unjammed &&
+         same(curve, b.curve) && same(clutter, b.clutter) && same(heard, b.heard) &&
+         blanker.auxiliary == b.blanker.auxiliary &&
+         blanker.curve.probabilities == b.blanker.curve.probabilities;
 }
 
 bool sameShare(const RadarShare& a, const RadarShare& b) {
@@ -150,16 +152,26 @@ bool samePattern(const PatternView& a, const PatternView& b) {
          sameTable(grid_table, b.grid_table, static_cast<long long>(columns) * rows);
 }
 
-bool sameChannelWeight(const ChannelWeight& a, const ChannelWeight& b) {
+bool sameShare(const ChannelWeight& a, const ChannelWeight& b) {
   const auto& [channel, weight] = a;
   return channel == b.channel && weight == b.weight;
 }
 
 template <class Share>
-const Share* shareIn(const std::vector<Share>& shares, int channel) {
-  const auto found = std::find_if(shares.begin(), shares.end(),
-                                  [channel](const Share& share) { return share.channel == channel; });
-  return found == shares.end() ? nullptr : &*found;
+std::vector<const Share*> sharesIn(const std::vector<Share>& shares, int channel) {
+  std::vector<const Share*> found;
+  for (const Share& share : shares) {
+    if (share.channel == channel) found.push_back(&share);
+  }
+  return found;
+}
+
+/// True if an emitter's contributions to a channel are the same.
+template <class Share>
+bool haveSame(const std::vector<Share>& a, const std::vector<Share>& b, int channel) {
+  const std::vector<const Share*> of_a = sharesIn(a, channel), of_b = sharesIn(b, channel);
+  return std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
+                    [](const Share* x, const Share* y) { return sameShare(*x, *y); });
 }
 
 }  // namespace
@@ -186,7 +198,7 @@ bool sameLook(const RadarShare& a, const RadarShare& b) {
 }
 
 bool sameRays(const JammerAtRadar& a, const JammerAtRadar& b) {
-  const auto& [direction, boresight_to_noise, has_reflected_ray, reflected, reflected_direction,
+  const auto& [direction, boresight_to_noise, duty, has_reflected_ray, reflected, reflected_direction,
                direct_amplitude, reflected_amplitude] = a;
   return direction == b.direction && has_reflected_ray == b.has_reflected_ray &&
          same(reflected, b.reflected) && reflected_direction == b.reflected_direction &&
@@ -261,17 +273,15 @@ bool markChangedChannels(const CombinePass::Member* before, const CombinePass::M
   const auto mark = [&](int channel) { is_any = channels[channel] = true; };
   const bool has_beam = sameBeam(old_beam, beam);
   for (const ChannelWeight& share : now->emitter.shares) {
-    const ChannelWeight* const old = shareIn(before->emitter.shares, share.channel);
-    if (!has_beam || old == nullptr || !sameChannelWeight(*old, share)) mark(share.channel);
+    if (!has_beam || !haveSame(before->emitter.shares, now->emitter.shares, share.channel))
+      mark(share.channel);
   }
   // If a radar looks at targets, its share does not contain the beam's direction in the scan.
   for (const RadarShare& share : now->radars) {
-    const RadarShare* const old = shareIn(before->radars, share.channel);
-    if (old == nullptr || !sameShare(*old, share)) mark(share.channel);
+    if (!haveSame(before->radars, now->radars, share.channel)) mark(share.channel);
   }
   for (const OccupancyShare& share : now->occupancies) {
-    const OccupancyShare* const old = shareIn(before->occupancies, share.channel);
-    if (old == nullptr || !sameShare(*old, share)) mark(share.channel);
+    if (!haveSame(before->occupancies, now->occupancies, share.channel)) mark(share.channel);
   }
   return is_any;
 }

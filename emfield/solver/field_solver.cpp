@@ -12,6 +12,7 @@
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
+#include "emscape/base/parallel.h"
 #include "emscape/base/work.h"
 #include "emscape/scenario/model/poses.h"
 
@@ -210,6 +211,7 @@ void FieldSolver::Impl::exchangeGeometry(int e, Impl& other, int other_e) {
   std::swap(cache.geometry, others.geometry);
   std::swap(cache.geometry_result, others.geometry_result);
   std::swap(cache.warnings, others.warnings);
+  std::swap(cache.steep, others.steep);
   engine->exchangeGeometry(e, *other.engine, other_e);
 }
 
@@ -363,13 +365,27 @@ MemoryEstimate FieldSolver::memoryEstimate() const {
   return impl_->estimate;
 }
 
-std::vector<std::string> FieldSolver::warnings() const {
+/// Makes the texts of steep ground that are missing, each of several plans.
+void FieldSolver::Impl::tellSteepGround() {
+  parallelFor(static_cast<int>(emitters.size()), 1, [&](int begin, int end) {
+    for (int e = begin; e < end; ++e) {
+      SteepCache& steep = emitters[static_cast<std::size_t>(e)].steep;
+      if (steep.ground && !steep.text) steep.text = propagation::steepGroundWarning({*steep.ground});
+    }
+  });
+}
+
+std::vector<std::string> FieldSolver::warnings(SteepGrounds* steep) const {
   WarningCounts all;
   for (const std::string& warning : impl_->setup.warnings) ++all[warning];
+  const scenario::Terrain* const ground = impl_->setup.terrain.get();
   for (const scenario::Emitter& emitter : impl_->setup.scenario->emitters) {
-    for (const std::string& warning :
-         laterTripWarnings(*impl_->setup.scenario, emitter, impl_->setup.terrain.get()))
-      ++all[warning];
+    for (const std::vector<std::string>& warnings :
+         {laterTripWarnings(*impl_->setup.scenario, emitter, ground),
+          ductedClutterWarnings(*impl_->setup.scenario, emitter, ground),
+          farthestScatterWarnings(*impl_->setup.scenario, emitter, ground, impl_->setup.columns)}) {
+      for (const std::string& warning : warnings) ++all[warning];
+    }
   }
   if (impl_->setup.terrain) {
     for (const std::string& warning : impl_->setup.terrain->warnings()) ++all[warning];
@@ -383,10 +399,16 @@ std::vector<std::string> FieldSolver::warnings() const {
         ++all[warning];
     }
   }
-  for (const EmitterCache& cache : impl_->emitters) {
+  if (steep == nullptr) impl_->tellSteepGround();
+  for (std::size_t e = 0; e < impl_->emitters.size(); ++e) {
+    const EmitterCache& cache = impl_->emitters[e];
     for (const WarningCounts* counts : {&cache.warnings, &cache.jamming_warnings}) {
       for (const auto& [warning, count] : *counts) all[warning] += count;
     }
+    const std::string& name = impl_->setup.scenario->emitters[e].name;
+    if (steep != nullptr && cache.steep.ground) (*steep)[name].push_back(*cache.steep.ground);
+    if (steep == nullptr && cache.steep.text && !cache.steep.text->empty())
+      ++all[steepGroundText(name, *cache.steep.text)];
   }
   std::vector<std::string> lines;
   for (const auto& [warning, count] : all) {

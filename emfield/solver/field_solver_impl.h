@@ -20,6 +20,12 @@ namespace emscape::emfield {
 /// Warnings with their counts.
 using WarningCounts = std::map<std::string, long long>;
 
+/// Ground that is too steep for an emitter's marches.
+struct SteepCache {
+  std::shared_ptr<const propagation::SteepGround> ground;  ///< at the position where most is lost; null: none
+  std::optional<std::string> text;  ///< propagation::steepGroundWarning() of it, once it was asked for
+};
+
 /// An emitter between updates.
 struct EmitterCache {
   scenario::EmitterState state;            ///< at the last update
@@ -32,6 +38,7 @@ struct EmitterCache {
   bool mount_changed = true;        ///< since the previous update: moved, switched or turned as a whole
   std::vector<JammerPath> jammers;  ///< of radars, for quantities with jamming
   WarningCounts warnings, jamming_warnings;
+  SteepCache steep;
 };
 
 /// Columns of a channel that are unknown to its emitters.
@@ -97,6 +104,7 @@ struct FieldSolver::Impl {
 
   void findMoved(const scenario::Snapshot& snapshot, Changes& changes);
   void findIntervals(const scenario::Snapshot& snapshot);
+  void tellSteepGround();
   void findJamming(const scenario::Snapshot& snapshot, const Changes& changes);
   void findCombined(const scenario::Snapshot& snapshot, Changes& changes);
   void findProducts(Changes& changes);
@@ -109,7 +117,7 @@ struct FieldSolver::Impl {
   void chooseResting(const std::vector<bool>& changed);
   void combine(int begin, int end, const std::vector<bool>& channel_chosen, bool into_static_sums);
   CombinePass::Member combineMember(int e, double t_s);
-  std::vector<RadarShare> radarShares(int e) const;
+  std::vector<RadarShare> radarShares(int e, double t_s) const;
   std::vector<OccupancyShare> occupancyShares(int e, double t_s);
   void makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes);
   VolumeRequest volumeRequest(int channel, const scenario::Snapshot& snapshot);

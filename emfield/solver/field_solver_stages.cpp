@@ -124,6 +124,9 @@ void FieldSolver::Impl::noteWarnings(int e) {
   for (const std::string& warning : pathWarnings(emitter, inputs, geometry_result.warnings)) {
     ++cache.warnings[warning];
   }
+  const auto& steep = geometry_result.steep;
+  if (steep && (!cache.steep.ground || steep->lostPart() > cache.steep.ground->lostPart()))
+    cache.steep = {steep, {}};
   if (geometry_result.near_voxels > 0) {
     ++cache.warnings[fmt::format(
         "emitter '{}': voxels closer than the far-field distance (2 D^2 / lambda = {:.0f} m) have the value "
@@ -168,7 +171,7 @@ CombinePass::Member FieldSolver::Impl::combineMember(int e, double t_s) {
   member.antenna = emitter.antenna;
   member.beam_antenna = interval ? interval->antenna : emitter.antenna;
   member.slot = e;
-  member.radars = radarShares(e);
+  member.radars = radarShares(e, t_s);
   member.occupancies = occupancyShares(e, t_s);
   CombineEmitter& part = member.emitter;
   part.emitter_index = e;
@@ -200,7 +203,8 @@ std::vector<OccupancyShare> FieldSolver::Impl::occupancyShares(int e, double t_s
     share.channel = static_cast<int>(c);
     share.threshold_wm2 = threshold_wm2;
     share.eirp_over_4pi_w = static_cast<float>(eirpOf_w(emitter) / (4 * kPi));
-    setPositions(*setup.scenario, emitter, emitters[e].state, t_s, reaches, share);
+    setPositions(*setup.scenario, whilePresent(*setup.scenario, emitter, t_s), emitters[e].state, t_s,
+                 reaches, share);
     shares.push_back(std::move(share));
   }
   return shares;

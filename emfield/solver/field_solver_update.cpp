@@ -94,6 +94,7 @@ void FieldSolver::Impl::discardResults(bool keeps_geometry) {
       kept.geometry = std::move(cache.geometry);
       kept.geometry_result = std::move(cache.geometry_result);
       kept.warnings = std::move(cache.warnings);
+      kept.steep = std::move(cache.steep);
     }
     cache = std::move(kept);
   }
@@ -147,6 +148,7 @@ void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& c
       cache.geometry.reset();
       cache.geometry_result = {};
       cache.warnings.clear();
+      cache.steep = {};
     }
     const bool is_renamed = changes.before != nullptr &&
                             changes.before->scenario->emitters[e].name != setup.scenario->emitters[e].name;
@@ -185,7 +187,8 @@ void FieldSolver::Impl::findIntervals(const scenario::Snapshot& snapshot) {
       needs_pattern = needs_pattern || (setup.channel_plans[c].reducesPower() &&
                                         std::count(members.begin(), members.end(), static_cast<int>(e)) > 0);
     }
-    const scenario::Emitter& emitter = setup.scenario->emitters[e];
+    const scenario::Emitter emitter =
+        whilePresent(*setup.scenario, setup.scenario->emitters[e], snapshot.time_s);
     const auto count = static_cast<double>(emitters.size()), number = static_cast<double>(e);
     const WorkPart part(fmt::format("'{}' over the interval, {} of {}", emitter.name, e + 1, emitters.size()),
                         number / count, (number + 1) / count);

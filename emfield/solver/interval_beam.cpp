@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "emscape/base/units.h"
 #include "scenario/scan/swept_antenna.h"
@@ -17,6 +19,7 @@ using scenario::ScanKind;
 using scenario::ScanSweep;
 using scenario::SweptArc;
 using scenario::SweptPattern;
+using scenario::TimeInterval;
 
 /// Turns the sweep into a frame in which it does not depend on the time, if there is one: the middle of a
 /// partial turn is forward.
@@ -89,8 +92,94 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
   return beam;
 }
 
+Emitter whilePresent(const scenario::Scenario& scenario, const Emitter& emitter, double t_s) {
+  const double duration_s =
+      scenario::intervalDuration_s(scenario.output.interval, emitter.scan, scenario.clock);
+  Emitter present = emitter;
+  std::vector<TimeInterval> times = scenario::activeTimes(scenario, emitter, t_s, duration_s);
+  if (scenario.platforms[static_cast<std::size_t>(emitter.platform)].moves() && !times.empty())
+    present.active_s = std::move(times);
+  return present;
+}
+
+std::vector<JammedLooks> looksByJammers(const scenario::Scenario& scenario, int radar,
+                                        const EmitterState& state, double t_s, const IntervalBeam& whole,
+                                        const std::vector<JammerPath>& jammers) {
+  const Emitter& emitter = scenario.emitters[static_cast<std::size_t>(radar)];
+  const double duration_s =
+      scenario::intervalDuration_s(scenario.output.interval, emitter.scan, scenario.clock);
+  const auto timesOf = [&](const Emitter& of) {
+    return scenario::activeTimes(scenario, of, t_s, duration_s);
+  };
+  const std::vector<TimeInterval> active = timesOf(emitter);
+  std::vector<std::vector<TimeInterval>> of_jammers;
+  for (const JammerPath& jammer : jammers)
+    of_jammers.push_back(timesOf(scenario.emitters[static_cast<std::size_t>(jammer.jammer)]));
+
+  std::vector<double> edges_s;
+  const auto addEdges = [&edges_s](const std::vector<TimeInterval>& times) {
+    for (const TimeInterval& time : times) edges_s.insert(edges_s.end(), {time.begin_s, time.end_s});
+  };
+  addEdges(active);
+  for (const std::vector<TimeInterval>& times : of_jammers) addEdges(times);
+  std::sort(edges_s.begin(), edges_s.end());
+  const auto holds = [](const std::vector<TimeInterval>& times, double at_s) {
+    const auto after =
+        std::upper_bound(times.begin(), times.end(), at_s,
+                         [](double value_s, const TimeInterval& time) { return value_s < time.begin_s; });
+    return after != times.begin() && at_s < std::prev(after)->end_s;
+  };
+  std::map<std::vector<std::size_t>, std::vector<TimeInterval>> times_by_jammers;
+  double active_s = 0;
+  for (std::size_t n = 0; n + 1 < edges_s.size(); ++n) {
+    const TimeInterval part{edges_s[n], edges_s[n + 1]};
+    const double middle_s = (part.begin_s + part.end_s) / 2;
+    if (!(part.begin_s < part.end_s) || !holds(active, middle_s)) continue;
+    std::vector<std::size_t> radiating;
+    for (std::size_t j = 0; j < of_jammers.size(); ++j) {
+      if (holds(of_jammers[j], middle_s)) radiating.push_back(j);
+    }
+    times_by_jammers[radiating].push_back(part);
+    active_s += part.end_s - part.begin_s;
+  }
+  const auto pathsOf = [&jammers](const std::vector<std::size_t>& radiating) {
+    std::vector<JammerPath> paths;
+    for (const std::size_t j : radiating) paths.push_back(jammers[j]);
+    return paths;
+  };
+  if (times_by_jammers.empty()) return {{jammers, whole}};
+  if (times_by_jammers.size() == 1) return {{pathsOf(times_by_jammers.begin()->first), whole}};
+
+  std::vector<JammedLooks> all;
+  const bool counts_cycles = emitter.scan.kind == ScanKind::dwell_list || stays(whole.of_sweep);
+  const bool passes_everywhere = emitter.scan.kind == ScanKind::rotate && whole.looks.everywhere >= 1;
+  const bool is_cumulative = scenario.output.interval.kind == IntervalKind::cumulative;
+  const ScanSweep sweep = scenario::sweepOf(emitter, t_s, duration_s);
+  for (const auto& [radiating, times] : times_by_jammers) {
+    Emitter part = emitter;
+    part.active_s = times;
+    double part_s = 0;
+    for (const TimeInterval& time : times) part_s += time.end_s - time.begin_s;
+    JammedLooks looks;
+    const auto share = static_cast<float>(part_s / active_s);
+    if (is_cumulative && !counts_cycles) {
+      looks.beam = whole;
+      looks.beam.looks = looksInPart(scenario, part, t_s, sweep, whole.looks, share);
+    } else {
+      looks.beam = intervalBeam(scenario, part, state, t_s, false, nullptr);
+      // Looks that are not passes at known times are shared out by time.
+      looks.beam.looks.least = passes_everywhere ? 0.0f : share;
+      if (counts_cycles) looks.beam.looks.everywhere = whole.looks.everywhere * share;
+    }
+    looks.jammers = pathsOf(radiating);
+    all.push_back(std::move(looks));
+  }
+  return all;
+}
+
 void lookInInterval(const IntervalBeam& beam, RadarTask& task, EmitterState& state) {
   task.looks.everywhere = beam.looks.everywhere;
+  task.looks.least = beam.looks.least;
   if (task.look.kind != LookKind::turned) return;
   state.mount = beam.look_frame;
   if (beam.looks.half_width_deg >= kTurn_deg / 2) return;

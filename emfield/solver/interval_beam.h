@@ -2,6 +2,9 @@
 /// and a radar's looks.
 #pragma once
 
+#include <vector>
+
+#include "emfield/channels/radar_share.h"
 #include "emfield/combine/radar_product.h"
 #include "emfield/solver/interval_looks.h"
 #include "emscape/scenario/model/scenario.h"
@@ -32,6 +35,25 @@ struct IntervalBeam {
 IntervalBeam intervalBeam(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                           const scenario::EmitterState& state, double t_s, bool needs_pattern,
                           const IntervalBeam* before);
+
+/// An emitter that is active only while its platform is present in the interval that begins at t_s; as it is
+/// if it is not active in the interval at all.
+scenario::Emitter whilePresent(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                               double t_s);
+
+/// The looks of a radar in the times of its interval in which the same jammers radiate.
+struct JammedLooks {
+  std::vector<JammerPath> jammers;
+  IntervalBeam beam;
+};
+
+/// The looks of a radar in the interval that begins at t_s by the jammers that radiate at their times; one
+/// element if these do not change while the radar is active.
+/// @param whole    the radar's looks in the interval
+/// @param jammers  that radiate at some time of the interval
+std::vector<JammedLooks> looksByJammers(const scenario::Scenario& scenario, int radar,
+                                        const scenario::EmitterState& state, double t_s,
+                                        const IntervalBeam& whole, const std::vector<JammerPath>& jammers);
 
 /// The frame about whose up axis the arcs of a sweep turn, or in which its dwells are steered.
 scenario::BeamPose sweepFrame(const scenario::Emitter& emitter, const scenario::EmitterState& state);

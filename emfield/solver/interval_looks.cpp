@@ -216,6 +216,20 @@ std::vector<LookArc> dwellDirections(const ScanSweep& sweep) {
   return directions;
 }
 
+bool isAllAround(const CountedArc& arc) {
+  return arc.cos_half < -1;
+}
+
+/// Number of passes towards a bar at all azimuths.
+float looksAllAround(const IntervalLooks& looks, const Bars& bars, int bar) {
+  float passes = looks.everywhere;
+  for (const CountedArc& arc : looks.arcs.counts) {
+    if (isAllAround(arc) && arc.sin_lowest <= bars.sineBelow(bar) && arc.sin_highest >= bars.sineAbove(bar))
+      passes += arc.passes;
+  }
+  return passes;
+}
+
 /// Number of cycles of the dwells in the active time of an interval; each cycle is one look in every
 /// direction.
 float dwellLooks(const scenario::ScanSpec& scan, double active_s) {
@@ -256,6 +270,7 @@ IntervalLooks intervalLooks(const scenario::Scenario& scenario, const Emitter& e
   const scenario::ScanSpec& scan = emitter.scan;
   const double duration_s = scenario::intervalDuration_s(interval, scan, scenario.clock);
   IntervalLooks looks;
+  looks.forward_deg = forward_deg;
   if (scan.kind == ScanKind::dwell_list) {
     looks.everywhere = dwellLooks(scan, scenario::activeTime_s(emitter, t_s, duration_s));
     looks.arcs.directions = dwellDirections(sweep);
@@ -272,6 +287,52 @@ IntervalLooks intervalLooks(const scenario::Scenario& scenario, const Emitter& e
   looks.everywhere =
       static_cast<float>(countLooks(sweep, sweeps ? scan.width_deg : kTurn_deg, bars, looks.arcs.counts));
   setDirections(sweep, bars, looks);
+  return looks;
+}
+
+IntervalLooks looksInPart(const scenario::Scenario& scenario, const Emitter& part, double t_s,
+                          const ScanSweep& sweep, const IntervalLooks& whole, float share) {
+  const double duration_s = scenario::intervalDuration_s(scenario.output.interval, part.scan, scenario.clock);
+  const auto inFrame = [&whole](ScanSweep of) {
+    for (SweptArc& arc : of.arcs) arc.first_deg -= whole.forward_deg;
+    return of;
+  };
+  const IntervalLooks own = intervalLooks(
+      scenario, part, t_s, inFrame(scenario::sweepOf(part, t_s, duration_s)), whole.forward_deg);
+  IntervalLooks looks = whole;
+  looks.arcs.passes = own.arcs.passes;
+  looks.everywhere = looks.least = 0;
+  looks.arcs.counts.clear();
+  // A direction at the edge of what the scan passes is within its arcs, however it is rounded.
+  constexpr double kGap_rad = 1e-5;
+  for (CountedArc arc : own.arcs.counts) {
+    if (isAllAround(arc)) continue;
+    arc.cos_half = static_cast<float>(
+        std::cos(std::min(std::acos(static_cast<double>(arc.cos_half)) + 2 * kGap_rad, kPi)));
+    looks.arcs.counts.push_back(arc);
+  }
+  const Bars bars(part.scan);
+  std::vector<SweptArc> passed = inFrame(sweep).arcs;
+  joinArcs(passed);
+  for (int bar = 0; bar < bars.count(); ++bar) {
+    const float elsewhere = share * std::max(looksAllAround(whole, bars, bar), whole.least);
+    CountedArc arc;
+    arc.sin_lowest = bars.sineBelow(bar);
+    arc.sin_highest = bars.sineAbove(bar);
+    arc.passes = elsewhere;
+    looks.arcs.counts.push_back(arc);
+    arc.passes = looksAllAround(own, bars, bar) - elsewhere;
+    for (const SweptArc& of : passed) {
+      if (bars.of(of) != bar) continue;
+      const double middle_rad = degToRad(of.first_deg + of.width_deg / 2);
+      arc.cos_middle = static_cast<float>(std::cos(middle_rad));
+      arc.sin_middle = static_cast<float>(std::sin(middle_rad));
+      arc.cos_half = of.width_deg < kTurn_deg
+                         ? static_cast<float>(std::cos(degToRad(of.width_deg / 2) + kGap_rad))
+                         : -2.0f;
+      looks.arcs.counts.push_back(arc);
+    }
+  }
   return looks;
 }
 

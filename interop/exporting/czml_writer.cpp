@@ -154,7 +154,7 @@ class CzmlWriter {
       writePlatform(i);
     }
     for (std::size_t i = 0; i < scenario_.emitters.size(); ++i) writeBeam(i);
-    sink_("\n]\n");
+    sink_(job_.czml_packets + "\n]\n");
     addRowsOfPlatforms(scenario_, rows);
     return records_;
   }

@@ -53,9 +53,9 @@ const ExportFormat& formatOf(const std::string& file) {
 }
 
 /// Writes an ACMI text into a zip file.
-long long writeZip(const ExportJob& job, const fs::path& file, bool replaces,
+long long writeZip(const ExportJob& job, const fs::path& file, Replaces replaces,
                    std::vector<ExportedRow>& rows) {
-  UnfinishedFile unfinished(file);
+  UnfinishedFile unfinished(file, replaces);
   const scenario::GdalMessages messages;
   void* const zip = CPLCreateZip(unfinished.temporary().c_str(), nullptr);
   if (zip == nullptr) failZip(messages, file);
@@ -83,7 +83,7 @@ long long writeZip(const ExportJob& job, const fs::path& file, bool replaces,
   flush();
   is_sound = CPLCloseFileInZip(zip) == CE_None && is_sound;
   if (CPLCloseZip(zip) != CE_None || !is_sound || messages.hasFailure()) failZip(messages, file);
-  unfinished.publish("", replaces);
+  unfinished.publish();
   return records;
 }
 
@@ -129,13 +129,15 @@ ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& sce
   ExportResult result;
   result.file = file;
   result.format = format.name;
-  const ExportJob job{*scenario, terrain, options.step_s > 0 ? options.step_s : 1, progress};
+  ExportJob job{*scenario, terrain, options.step_s > 0 ? options.step_s : 1, progress, {}};
   requireFewRecords(*scenario, job.step_s);
   result.emitters = file + ".emitters.yaml";
+  const Replaces replaces = options.replace ? Replaces::any : Replaces::nothing;
   if (!options.replace) requireNew({file, result.emitters});
+  if (options.czml_packets) job.czml_packets = options.czml_packets();
   std::vector<ExportedRow> rows;
   if (format.is_zip) {
-    result.records = writeZip(job, file, options.replace, rows);
+    result.records = writeZip(job, file, replaces, rows);
   } else {
     writeWhole(
         file,
@@ -144,12 +146,12 @@ ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& sce
                                       : format.write(
                                             job, [&](const std::string& piece) { stream << piece; }, rows);
         },
-        options.replace);
+        replaces);
   }
   const std::string database =
       databaseText(*scenario, rows, fs::absolute(result.emitters).parent_path().string());
   writeWhole(
-      result.emitters, [&](std::ostream& stream) { stream << database; }, options.replace);
+      result.emitters, [&](std::ostream& stream) { stream << database; }, replaces);
   const std::string missing = missingText(*scenario, format, rows.size());
   result.notes.push_back(missing);
   const bool needs_epoch = !endsWith(file, ".acmi") && !is_capture && !endsWith(file, ".asi");

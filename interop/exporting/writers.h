@@ -18,6 +18,7 @@ struct ExportJob {
   const scenario::Terrain* terrain;
   double step_s;
   ProgressSink progress;
+  std::string czml_packets = {};  ///< further ones, each after ",\n"
 };
 
 /// Receives the text of a file in pieces.

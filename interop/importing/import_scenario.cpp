@@ -122,6 +122,7 @@ class Importer {
   void makeEmitters();
   void loadTerrain();
   void makeTracks();
+  void addSilentEmitter();
   void tellNames(const std::vector<std::string>& numbered);
   void tellWhatIsMissing();
   void write();
@@ -256,6 +257,7 @@ void Importer::makeEmitters() {
   const bool has_emitter =
       std::any_of(chosen_.begin(), chosen_.end(), [](const Chosen& c) { return !c.emitters.empty(); });
   if (has_emitter || base_) return;
+  if (options_.adds_silent_emitter) return addSilentEmitter();
   std::string unmatched;
   for (const ImportedEmitters& use : result_.emitters)
     unmatched += (unmatched.empty() ? ": " : "; ") + use.name + " (" + use.fault + ")";
@@ -269,6 +271,20 @@ void Importer::makeEmitters() {
           document::flowText(*textNode(fs::path(recording_.file).filename().string()), true),
           shifted_.size() == 1 ? ""
                                : ", object: " + document::flowText(*textNode(shifted_.front().name), true)));
+}
+
+void Importer::addSilentEmitter() {
+  Chosen& first = chosen_.front();
+  result_.silent_emitter = first.name + " transmitter";
+  first.emitters.push_back(MapBuilder()
+                               .set("name", textNode(result_.silent_emitter))
+                               .set("platform", textNode(first.name))
+                               .set("kind", textNode("transmitter"))
+                               .set("enabled", booleanNode(false))
+                               .set("frequency_hz", numberNode(300e6))
+                               .set("power_w", numberNode(100))
+                               .set("antenna", MapBuilder().set("pattern", textNode("isotropic")).node())
+                               .node());
 }
 
 void Importer::tellNames(const std::vector<std::string>& numbered) {
@@ -429,7 +445,7 @@ void Importer::write() {
     result_.tracks = (fs::path(options_.scenario).parent_path() / tracks_name).string();
   }
   try {
-    writeWhole(files, options_.replace);
+    writeWhole(files, options_.replace ? Replaces::any : Replaces::nothing);
   } catch (...) {
     std::error_code ignored;
     if (result_.track_files > 0) fs::remove(fs::path(folder_) / tracks_name, ignored);  // if it is empty

@@ -47,6 +47,10 @@ DocumentNodePtr decimalNode(double value, int decimals) {
   return scalarNode(decimalText(value, decimals), false);
 }
 
+DocumentNodePtr booleanNode(bool value) {
+  return scalarNode(value ? "true" : "false", false);
+}
+
 DocumentNodePtr textNode(const std::string& text) {
   return scalarNode(text, true);
 }

@@ -18,6 +18,7 @@ DocumentNodePtr numberNode(double value, int digits = 9);
 /// A number with so many decimals, without zeros at the end.
 std::string decimalText(double value, int decimals);
 DocumentNodePtr decimalNode(double value, int decimals);
+DocumentNodePtr booleanNode(bool value);
 DocumentNodePtr textNode(const std::string& text);
 DocumentNodePtr listNode(std::vector<DocumentNodePtr> items);
 

@@ -77,7 +77,8 @@ void Autosaves::keep(const std::string& input, const ViewState& state) {
   writeViewState(stored_[first].file.string(), state);
 }
 
-std::optional<AutosavedView> Autosaves::find(const std::string& input) {
+std::optional<AutosavedView> Autosaves::find(const std::string& input,
+                                             const std::vector<std::string>& sources) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const fs::path first = autosaveFileOf(input);
   const auto own = stored_.find(first);
@@ -105,8 +106,10 @@ std::optional<AutosavedView> Autosaves::find(const std::string& input) {
   const fs::path& file = found->second.file;
   const std::optional<std::int64_t> written_ms = writtenAt_ms(file);
   if (!written_ms) return std::nullopt;
-  return AutosavedView{file, utcText(*written_ms), writtenAt_ms(input).value_or(0) > *written_ms, others,
-                       readViewState(file.string())};
+  const bool has_changed = std::any_of(sources.begin(), sources.end(), [&](const std::string& source) {
+    return writtenAt_ms(source).value_or(0) > *written_ms;
+  });
+  return AutosavedView{file, utcText(*written_ms), has_changed, others, readViewState(file.string())};
 }
 
 void Autosaves::adopt(const std::string& input) {
@@ -114,8 +117,14 @@ void Autosaves::adopt(const std::string& input) {
   const fs::path first = autosaveFileOf(input);
   const auto found = found_.find(first);
   if (found == found_.end()) return;
-  stored_[first] = std::move(found->second);
-  found_.erase(found);
+  // What was stored before is found next: it stays until it is adopted or discarded.
+  const auto stored = stored_.find(first);
+  if (stored == stored_.end()) {
+    stored_[first] = std::move(found->second);
+    found_.erase(found);
+  } else {
+    std::swap(stored->second, found->second);
+  }
 }
 
 void Autosaves::discard(const std::string& input) {

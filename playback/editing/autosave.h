@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "playback/view/view_file.h"
 
@@ -28,7 +29,7 @@ std::filesystem::path autosaveFileOf(const std::string& input, int number = 1);
 struct AutosavedView {
   std::filesystem::path file;
   std::string written_utc;     ///< ISO 8601
-  bool input_changed = false;  ///< the input was modified later
+  bool input_changed = false;  ///< a file of the input was modified later
   int others = 0;              ///< further stored views of the input, of programs that have ended
   ViewState state;
 };
@@ -49,8 +50,10 @@ class Autosaves {
   void keep(const std::string& input, const ViewState& state);
   /// The newest view of an input that this program stored, or that a program that has ended left, which this
   /// program takes over. It stays until it is adopted or discarded. Empty if there is none.
+  /// @param sources  the user's files of the input: itself, or those that it was made of
   /// @throws Error (bad_input) if it cannot be read
-  std::optional<AutosavedView> find(const std::string& input);
+  std::optional<AutosavedView> find(const std::string& input, const std::vector<std::string>& sources);
+  std::optional<AutosavedView> find(const std::string& input) { return find(input, {input}); }
   /// The view that was found is the one that keep() replaces.
   void adopt(const std::string& input);
   /// Removes the view that was found.

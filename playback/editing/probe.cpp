@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emfield/link/path_report.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "volume/difference.h"
@@ -61,7 +62,9 @@ std::string textOf(const VolumeSample& sample, const DenseVolume& volume) {
     case VolumeSample::Kind::masked:
       return volume.grid.georeferenced ? "masked: below the ground, or over missing terrain" : "masked";
     case VolumeSample::Kind::at_floor:
-      return info.categorical ? "none" : fmt::format("no field above the floor of {:g}{}", info.floor, unit);
+      if (info.categorical) return "none";
+      if (!unit.empty()) return fmt::format("no field above the floor of {:g}{}", info.floor, unit);
+      return fmt::format("{}{:g}", info.floor == 0 ? "" : "at most ", info.floor);  // a probability, a number
     case VolumeSample::Kind::value:
       break;
   }
@@ -89,6 +92,7 @@ std::vector<EmitterProbe> probeEmitters(const emfield::PathEnd& point, double ti
     try {
       emitters[e].budget = emfield::pathBudget(snapshot, static_cast<int>(e), point,
                                                scenario->emitters[e].propagation.model, terrain);
+      emfield::tellSteepGround(*emitters[e].budget);
     } catch (const Error& error) {
       refuse(emitters[e], error);
     }

@@ -1,13 +1,18 @@
 #include "playback/frames/ground_marks.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "base/geodesy/position_text.h"
 #include "base/text/display_units.h"
+#include "emscape/base/log.h"
 #include "emscape/base/units.h"
 #include "playback/frames/ground.h"
+#include "scenario/file/far_outside.h"
 
 namespace emscape::playback {
 namespace {
@@ -237,6 +242,51 @@ void GroundMarks::addRings(const std::vector<RangeRings>& rings, const std::vect
       addLine(plane_.at(circle), {GroundInk::ring, {}, roundDistanceText(n * ring.spacing_m, units)});
     }
   }
+}
+
+void tellPlacesOutside(const std::string& file, const std::vector<scenario::Place>& places,
+                       const MarkedPlane& plane, const scenario::Region* region) {
+  constexpr std::size_t kMaxNamed = 3;
+  std::string mistake;
+  std::vector<std::pair<double, const scenario::Place*>> outside;  // with the distance (m) from the plane
+  for (const scenario::Place& place : places) {
+    Vec3d lowest{HUGE_VAL, HUGE_VAL, 0}, highest{-HUGE_VAL, -HUGE_VAL, 0};
+    for (const std::vector<GeodeticPosition>& part : place.parts) {
+      for (const Vec3d& at : plane.at(part)) {
+        lowest = {std::min(lowest.x, at.x), std::min(lowest.y, at.y), 0};
+        highest = {std::max(highest.x, at.x), std::max(highest.y, at.y), 0};
+      }
+    }
+    const double distance_m =
+        std::hypot(std::max({0.0, plane.lower_m.x - highest.x, lowest.x - plane.upper_m.x}),
+                   std::max({0.0, plane.lower_m.y - highest.y, lowest.y - plane.upper_m.y}));
+    if (distance_m > 0) outside.emplace_back(distance_m, &place);
+  }
+  if (outside.empty()) return;
+  std::sort(outside.begin(), outside.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (outside.size() == places.size()) {
+    for (const scenario::Place& place : places) {
+      for (const std::vector<GeodeticPosition>& part : place.parts) {
+        for (const GeodeticPosition& position : part) {
+          if (mistake.empty() && region != nullptr)
+            mistake = scenario::mistakenPlaceText(*region, position.latitude_deg, position.longitude_deg);
+        }
+      }
+    }
+    logWarning(fmt::format("{}: none of its places is in the area, so that none is drawn{}", file,
+                           mistake.empty() ? "" : "; " + mistake));
+    return;
+  }
+  std::string names;
+  for (std::size_t n = 0; n < std::min(outside.size(), kMaxNamed); ++n) {
+    const auto& [distance_m, place] = outside[n];
+    names += n == 0 ? "" : "; ";
+    names += place->name.empty() ? "one without a name" : "'" + place->name + "'";
+    if (std::isfinite(distance_m)) names += ", " + distanceText(distance_m, Units::metric) + " away";
+  }
+  logInfo(fmt::format("{}: {} of {} places {} outside of the area, and not drawn: {}{}", file, outside.size(),
+                      places.size(), outside.size() == 1 ? "is" : "are", names,
+                      outside.size() > kMaxNamed ? "; ..." : ""));
 }
 
 }  // namespace emscape::playback

@@ -66,4 +66,10 @@ class GroundMarks {
   const MarkedPlane plane_;
 };
 
+/// Tells which places of a file are outside of a plane, and not drawn: up to three names, nearest first; a
+/// warning if none is drawn, else an information. Nothing if all are drawn, at least in part.
+/// @param region  for a likely mistake; null: none is looked for
+void tellPlacesOutside(const std::string& file, const std::vector<scenario::Place>& places,
+                       const MarkedPlane& plane, const scenario::Region* region);
+
 }  // namespace emscape::playback

@@ -166,7 +166,8 @@ struct LiveView::Impl {
     status.quantities = std::move(solve.quantities);
     status.warnings = std::move(solve.warnings);
     status.error = solve.error.empty() ? cast.error : solve.error;
-    status.error_code = solve.error.empty() ? ErrorCode::other : solve.error_code;
+    status.is_field_error = !solve.error.empty();
+    status.error_code = status.is_field_error ? solve.error_code : ErrorCode::other;
     status.wake_ups = cast.wake_ups + solve.wake_ups;
     status.device = device;
     return status;

@@ -81,10 +81,11 @@ struct LiveStatus {
   std::size_t cached_bytes = 0;         ///< of the steps and of the reference of a comparison
   std::vector<std::string> quantities;  ///< that the input's files hold; empty if the field is computed
   std::shared_ptr<const std::vector<std::string>>
-      warnings;        ///< of the models, about the last field; may be null
-  std::string reason;  ///< reason for the pattern
-  std::string device;  ///< "cpu" or the name of the GPU
-  std::string error;   ///< the last failure, in one line; empty after the next success of its kind
+      warnings;                 ///< of the models, about the last field; may be null
+  std::string reason;           ///< reason for the pattern
+  std::string device;           ///< "cpu" or the name of the GPU
+  std::string error;            ///< the last failure, in one line; empty after the next success of its kind
+  bool is_field_error = false;  ///< a field failed, which the next one mends; else a picture
   ErrorCode error_code = ErrorCode::other;  ///< of an input that cannot be opened
   long long frame = 0;                      ///< number of the picture, from 1; 0: none yet
   long long fields_computed = 0;

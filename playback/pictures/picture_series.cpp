@@ -16,7 +16,8 @@ double drawPictures(FrameSource& source, Painter& painter, const render::FramePl
     if (!film.cameras.empty()) painter.setCamera(film.cameras[static_cast<std::size_t>(index)]);
     cast_ms += painter.draw(plan, stop).total_ms();
     throwIfStopped(stop);
-    writer.push([&sinks, index, picture = painter.picture(painter.note(plan.pattern))] {
+    writer.push([&sinks, index, picture = painter.picture(painter.note(plan.pattern)), work = currentWork()] {
+      const WorkScope scope(work);  // a large picture is not encoded to its end
       for (const auto& sink : sinks) sink->add(index + 1, picture, 1);
     });
     if (done) done(index + 1);

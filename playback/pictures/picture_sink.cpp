@@ -3,6 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
+#include <set>
+#include <system_error>
 
 #include "base/files/folder.h"
 #include "base/files/unfinished_file.h"
@@ -23,59 +26,89 @@ fs::path folderOf(const fs::path& file) {
   return fs::absolute(file).parent_path();
 }
 
-void writeCommented(const fs::path& file, const render::Image8& picture, const std::string& comment) {
+void writeCommented(const fs::path& file, const render::Image8& picture, const std::string& comment,
+                    Replaces replaces) {
   const std::string png = render::withPngComment(render::encodePng(picture), comment);
-  writeWhole(file, [&](std::ostream& out) { out << png; });
+  writeWhole(
+      file, [&](std::ostream& out) { out << png; }, replaces);
 }
 
 class OnePng : public PictureSink {
  public:
-  OnePng(fs::path file, std::string comment) : file_(std::move(file)), comment_(std::move(comment)) {
+  OnePng(fs::path file, std::string comment, Replaces replaces)
+      : file_(std::move(file)), comment_(std::move(comment)), replaces_(replaces) {
     removeAbandonedFiles(folderOf(file_));
   }
   void add(int /*number*/, const render::Image8& picture, int /*frames*/) override {
-    writeCommented(file_, picture, comment_);
+    writeCommented(file_, picture, comment_, replaces_);
   }
   void finish() override {}
 
  private:
   const fs::path file_;
   const std::string comment_;
+  const Replaces replaces_;
 };
 
 class PngFolder : public PictureSink {
  public:
-  PngFolder(fs::path folder, const std::string& name, std::string comment)
-      : folder_(std::move(folder)), name_(fileNameOf(name)), comment_(std::move(comment)) {
+  PngFolder(fs::path folder, const std::string& name, int pictures, std::string comment, Replaces replaces)
+      : folder_(std::move(folder)),
+        name_(fileNameOf(name)),
+        comment_(std::move(comment)),
+        replaces_(replaces) {
     makeFolder(folder_);
     removeAbandonedFiles(folder_);
+    for (const int number : numbersIn(folder_)) {
+      if (replaces == Replaces::own && number <= pictures) requireOwn(fileOf(number));
+    }
   }
   void add(int number, const render::Image8& picture, int /*frames*/) override {
-    writeCommented(fileOf(number), picture, comment_);
+    writeCommented(fileOf(number), picture, comment_, replaces_);
     last_ = std::max(last_, number);
   }
   /// Pictures of an earlier, longer run are the user's: they are named, not removed.
   void finish() override {
-    int others = 0;
-    while (fs::exists(fileOf(last_ + 1 + others))) ++others;
-    if (others == 0) return;
-    logWarning(fmt::format("{}{} of an earlier run: this one wrote {} picture{}", fileOf(last_ + 1).string(),
-                           others == 1 ? " is" : fmt::format(" and {} more are", others - 1), last_,
-                           last_ == 1 ? "" : "s"));
+    std::set<int> others = numbersIn(folder_);
+    others.erase(others.begin(), others.upper_bound(last_));
+    if (others.empty()) return;
+    logWarning(fmt::format("{}{} of an earlier run: this one wrote {} picture{}",
+                           fileOf(*others.begin()).string(),
+                           others.size() == 1 ? " is" : fmt::format(" and {} more are", others.size() - 1),
+                           last_, last_ == 1 ? "" : "s"));
   }
 
  private:
   fs::path fileOf(int number) const { return volume::seriesFile(folder_, name_, number, "png"); }
+  /// The number in a picture's name; 0: it is not a picture of the series.
+  int numberOf(const fs::path& file) const {
+    const std::string name = file.filename().string(), begin = name_ + "_";
+    if (name.rfind(begin, 0) != 0) return 0;
+    int number = 0;
+    std::from_chars(name.data() + begin.size(), name.data() + name.size(), number);
+    return number > 0 && fileOf(number).filename() == name ? number : 0;
+  }
+  /// Of the pictures of the series in a folder.
+  std::set<int> numbersIn(const fs::path& folder) const {
+    std::set<int> numbers;
+    std::error_code unread;
+    for (fs::directory_iterator entry(folder, unread), end; !unread && entry != end;
+         entry.increment(unread)) {
+      if (const int number = numberOf(entry->path()); number > 0) numbers.insert(number);
+    }
+    return numbers;
+  }
 
   const fs::path folder_;
   const std::string name_, comment_;
+  const Replaces replaces_;
   int last_ = 0;  ///< number of the last picture
 };
 
 class Video : public PictureSink {
  public:
-  Video(const fs::path& file, render::ImageSize size, double frames_per_s)
-      : video_(file, size, frames_per_s) {
+  Video(const fs::path& file, render::ImageSize size, double frames_per_s, Replaces replaces)
+      : video_(file, size, frames_per_s, replaces) {
     removeAbandonedFiles(folderOf(file));
   }
   void add(int /*number*/, const render::Image8& picture, int frames) override {
@@ -107,21 +140,21 @@ void checkPictureOutput(const fs::path& output) {
 
 std::unique_ptr<PictureSink> makePictureSink(const fs::path& output, const std::string& name, int pictures,
                                              render::ImageSize size, double frames_per_s,
-                                             const std::string& comment) {
+                                             const std::string& comment, Replaces replaces) {
   switch (kindOf(output)) {
     case OutputKind::video:
-      return std::make_unique<Video>(output, size, frames_per_s);
+      return std::make_unique<Video>(output, size, frames_per_s, replaces);
     case OutputKind::folder:
-      return std::make_unique<PngFolder>(output, name, comment);
+      return std::make_unique<PngFolder>(output, name, pictures, comment, replaces);
     case OutputKind::png:
       break;
   }
   if (pictures != 1) {
     throw Error(ErrorCode::usage,
                 fmt::format("{}: one .png for {} pictures; name one time, a folder or an .mp4",
-                            output.string(), pictures));
+                            output.string(), pictures == kAnyNumber ? "several" : std::to_string(pictures)));
   }
-  return std::make_unique<OnePng>(output, comment);
+  return std::make_unique<OnePng>(output, comment, replaces);
 }
 
 }  // namespace emscape::playback

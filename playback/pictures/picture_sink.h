@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 
+#include "base/files/own_file.h"
 #include "emscape/render/picture/image.h"
 
 namespace emscape::playback {
@@ -23,11 +25,15 @@ class PictureSink {
 /// Checks the extension before anything is computed. @throws Error (usage) as makePictureSink()
 void checkPictureOutput(const std::filesystem::path& output);
 
+/// Number of pictures: it is not known.
+inline constexpr int kAnyNumber = std::numeric_limits<int>::max();
+
 /// By the extension of `output`: .png (one picture), .mp4, or a folder (no extension) of NAME_0001.png, ....
-/// @param comment  of PNG files; may be empty
-/// @throws Error (usage) for another extension, or a .png for several pictures
+/// @param pictures  number, at most  @param comment  of PNG files; may be empty
+/// @param replaces  of one file, and of the pictures of a folder
+/// @throws Error (usage) for another extension, a .png for several pictures, or a file that is to stay
 std::unique_ptr<PictureSink> makePictureSink(const std::filesystem::path& output, const std::string& name,
                                              int pictures, render::ImageSize size, double frames_per_s,
-                                             const std::string& comment);
+                                             const std::string& comment, Replaces replaces = Replaces::own);
 
 }  // namespace emscape::playback

@@ -41,6 +41,7 @@ bool Scenery::update(const ViewState& view, const LoadedScenario* scene, const v
     coast_.reset();
     ground_.reset();
     marked_.reset();
+    for (PlacesOfFile& of_file : places_) of_file.is_told_outside = false;
   }
   updateCoast(view);
   const bool is_other_ground = updateGround(view);
@@ -104,8 +105,7 @@ void Scenery::updatePlaces(const std::vector<std::string>& files) {
   marked_.reset();
   for (const std::string& file : files) {
     try {
-      std::vector<scenario::Place> read = scenario::readPlaces(file);
-      std::move(read.begin(), read.end(), std::back_inserter(places_));
+      places_.push_back({file, scenario::readPlaces(file)});
     } catch (const Error& error) {
       fault_ = error;
     }
@@ -120,13 +120,18 @@ void Scenery::updateMarks(const ViewState& view) {
   lines_.clear();
   points_.clear();
   if (!grid_->georeferenced) return;
-  GroundMarks marks(markedPlane(*grid_, drawn_.get(), scene()));
+  const MarkedPlane plane = markedPlane(*grid_, drawn_.get(), scene());
+  GroundMarks marks(plane);
   const bool is_smooth = scene_ && !scene_->terrain;
   if (coast_ && (view.coast == Shown::on || !is_sea_by_heights_))
     marks.addCoast(*coast_, view.coast == Shown::on);
   if (view.graticule == Shown::on || (view.graticule == Shown::automatic && is_smooth && drawn_))
     marks.addGraticule(view.positions);
-  marks.addPlaces(places_);
+  for (PlacesOfFile& of_file : places_) {
+    marks.addPlaces(of_file.places);
+    if (std::exchange(of_file.is_told_outside, true)) continue;
+    tellPlacesOutside(of_file.file, of_file.places, plane, scene_ ? &scene_->scenario->region : nullptr);
+  }
   lines_ = std::move(marks.lines);
   points_ = std::move(marks.points);
 }

@@ -48,7 +48,12 @@ class Scenery {
   std::shared_ptr<const render::HeightField> drawn_;
 
   std::vector<std::string> place_files_;
-  std::vector<scenario::Place> places_;
+  struct PlacesOfFile {
+    std::string file;
+    std::vector<scenario::Place> places;
+    bool is_told_outside = false;  ///< of the area of grid_
+  };
+  std::vector<PlacesOfFile> places_;
 
   std::optional<ViewState> marked_;  ///< the view of the marks
   std::vector<render::GroundLine> lines_;

@@ -25,8 +25,9 @@ Error failure(const std::filesystem::path& path, const std::string& what) {
 
 }  // namespace
 
-VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double frames_per_s)
-    : file_(std::move(path)), size_(size) {
+VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double frames_per_s,
+                     Replaces replaces)
+    : file_(std::move(path), replaces), size_(size) {
   // Without "file:" ffmpeg takes a name with a colon for an address.
   const std::vector<std::string> arguments{
       "ffmpeg", "-hide_banner", "-loglevel", "error", "-xerror", "-nostdin", "-y", "-f", "rawvideo",

@@ -15,8 +15,9 @@ namespace emscape::playback {
 /// when it is complete.
 class VideoFile {
  public:
-  /// @throws Error (other) if there is no ffmpeg on PATH or it does not start
-  VideoFile(std::filesystem::path path, render::ImageSize size, double frames_per_s);
+  /// @throws Error (other) if there is no ffmpeg on PATH or it does not start; (usage) as requireOwn()
+  VideoFile(std::filesystem::path path, render::ImageSize size, double frames_per_s,
+            Replaces replaces = Replaces::own);
   /// Without finish(), no file remains.
   ~VideoFile();
   VideoFile(const VideoFile&) = delete;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
-#include <regex>
 
+#include "base/files/file_digest.h"
+#include "base/files/own_file.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/playback/series/series_writer.h"
@@ -65,16 +67,23 @@ volume::DenseVolume fogOf(const volume::DenseVolume& field, const ValueRange& ra
   return fog;
 }
 
-/// The name in the files of a folder's series; none without a readable description.
-std::optional<std::string> nameOfOld(const fs::path& folder) {
-  try {
-    const std::optional<SeriesState> state = readSeriesState(folder);
-    const Json scenario = state ? state->recipe.value("scenario", Json()) : Json();
-    if (scenario.is_string()) return fileNameOf(scenario.get<std::string>());
-  } catch (const Error&) {
-    // A damaged description is replaced, too.
+/// True for the name of a volume or of its sidecar.
+bool isVolumeName(fs::path name) {
+  if (name.extension() == ".json") name = name.stem();
+  const std::string ending = name.extension();
+  const std::vector<volume::FileFormat> formats = volume::fileFormats();
+  return ending == std::string(".") + kMeshFormat ||
+         std::any_of(formats.begin(), formats.end(),
+                     [&](const volume::FileFormat& format) { return ending == "." + format.name; });
+}
+
+/// The list of the VTK files of a series; empty if it has none.
+std::string indexOf(const std::map<std::string, FileDigest>& files) {
+  for (const auto& [name, digest] : files) {
+    const std::string ending = fs::path(name).extension();
+    if (ending == ".vti" || ending == ".vtu") return name.substr(0, name.rfind('_')) + ".pvd";
   }
-  return std::nullopt;
+  return "";
 }
 
 }  // namespace
@@ -185,7 +194,7 @@ void SeriesFiles::writeIndex(const std::vector<bool>& finished) const {
     entries.push_back(
         {times_s_[step], volume::seriesFile(folder_, name_, static_cast<int>(step) + 1, format)});
   }
-  volume::writePvd(folder_ / (name_ + ".pvd"), entries);
+  volume::writePvd(folder_ / indexName(), entries);
 }
 
 bool SeriesFiles::isReadWithSeries(const fs::path& file) const {
@@ -196,21 +205,16 @@ bool SeriesFiles::isReadWithSeries(const fs::path& file) const {
   return volume::isMeshFile(file);
 }
 
-std::regex SeriesFiles::names() const {
-  // The names have only letters, digits, '_' and '-', which need no escaping in a regular expression.
-  const std::string name = "(" + name_ + "|" + nameOfOld(folder_).value_or(name_) + ")";
-  return std::regex(name + R"(_\d{4,}(_[\w-]+)?\.(vdb|nvdb|vti|vtu|raw|nvdb\.json|raw\.json)|)" + name +
-                    R"(\.pvd|series\.json|series\.steps)");
-}
-
 void SeriesFiles::requireNone(const std::vector<fs::path>& inputs) const {
-  const std::regex ours = names();
+  const std::map<std::string, FileDigest> present = SeriesJournal(folder_).files();
+  std::set<std::string> names = ownNames();
+  names.insert({indexOf(present), "series.json", "series.steps"});
+  for (const auto& [name, digest] : present) names.insert(name);
   for (const fs::path& input : inputs) {
     std::error_code failed;
     const fs::path target = fs::weakly_canonical(fs::absolute(input, failed), failed);
     for (const fs::path& file : {fs::absolute(input, failed), target}) {
-      if (fs::equivalent(file.parent_path(), folder_, failed) &&
-          std::regex_match(file.filename().string(), ours)) {
+      if (fs::equivalent(file.parent_path(), folder_, failed) && names.count(file.filename().string()) != 0) {
         throw Error(
             ErrorCode::usage, {input.string()},
             "is a file of the scenario, and has the name of a file of the series; use another folder");
@@ -224,12 +228,13 @@ std::set<std::string> SeriesFiles::ownNames() const {
   for (int step = 0; step < static_cast<int>(times_s_.size()); ++step) {
     for (const std::string& name : namesOf(step)) names.insert(name);
   }
-  if (hasIndex()) names.insert(name_ + ".pvd");
+  if (hasIndex()) names.insert(indexName());
   return names;
 }
 
 void SeriesFiles::requireFree() const {
-  const std::set<std::string> own = ownNames();
+  std::set<std::string> own = ownNames();
+  own.insert({"series.steps", "series.json"});
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
     std::error_code ignored;
     const bool is_replaced = own.count(entry.path().filename().string()) != 0;
@@ -244,28 +249,52 @@ void SeriesFiles::requireFree() const {
   }
 }
 
+void SeriesFiles::requireOwnDescription() const {
+  std::set<std::string> names = ownNames();
+  names.insert({"series.json", "series.steps"});
+  for (const std::string& name : names) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(folder_ / name, ignored);
+    if (!fs::exists(status) || fs::is_regular_file(status)) continue;
+    throw Error(ErrorCode::usage, {(folder_ / name).string()},
+                "is no file, and the series has a file of that name; move it away, or use another folder");
+  }
+  requireOwn(folder_ / "series.json");
+  if (hasIndex()) requireOwn(folder_ / indexName());
+}
+
+void SeriesFiles::requireOwnFilesOf(int step) const {
+  for (const std::string& name : namesOf(step)) requireOwn(folder_ / name);
+}
+
 fs::perms SeriesFiles::removeOld() const {
-  std::set<std::string> ours = SeriesJournal(folder_).fileNames();
-  const bool had_index = std::any_of(ours.begin(), ours.end(), [](const std::string& name) {
-    return fs::path(name).extension() == ".vti" || fs::path(name).extension() == ".vtu";
-  });
-  if (had_index) ours.insert(nameOfOld(folder_).value_or(name_) + ".pvd");
-  const std::regex of_series = names();  // somebody else may have written the list
+  requireOwnDescription();
+  const SeriesJournal journal(folder_);
+  journal.requireOwn();
+  const std::map<std::string, FileDigest> ours = journal.files();
+  const std::string index = indexOf(ours);
   const std::set<std::string> replaced = ownNames();
-  std::vector<fs::path> files{folder_ / "series.json", folder_ / "series.steps"};
+  std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
     std::error_code ignored;  // as of a link to itself
     if (!entry.is_regular_file(ignored)) continue;
-    const std::string name = entry.path().filename().string();
-    if (ours.count(name) != 0 && std::regex_match(name, of_series)) {
+    const std::string name = entry.path().filename();
+    const auto listed = ours.find(name);
+    // A killed process may have set a range that the journal does not list.
+    if (listed == ours.end() ? name == index && isOwn(entry)
+                             : isVolumeName(name) && (digestOf(entry) == listed->second || isOwn(entry))) {
       files.push_back(entry);
-    } else if (isReadWithSeries(entry) && replaced.count(name) == 0) {
+    } else if (replaced.count(name) != 0) {
+      requireOwn(entry);
+    } else if (isReadWithSeries(entry)) {
       throw Error(
           ErrorCode::usage, {entry.path().string()},
           "is not a file of the present series, and would be read with the new one; remove it, or use "
           "another folder");
     }
   }
+  // Last, so that a removal that is interrupted can be repeated.
+  for (const char* const name : {"series.steps", "series.json"}) files.push_back(folder_ / name);
   fs::perms permissions = fs::perms::all;
   for (const fs::path& file : files) {
     std::error_code ignored;

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -44,24 +43,29 @@ class SeriesFiles {
   /// Writes the list. @param finished  one per step
   void writeIndex(const std::vector<bool>& finished) const;
 
-  /// @throws Error (usage) if one of the files is in the folder and has a name that a file of this or of the
-  /// present series may have: it would be replaced or removed
+  /// @throws Error (usage) if one of the files is in the folder and has the name of a file of this or of the
+  /// present series: it would be replaced or removed
   void requireNone(const std::vector<std::filesystem::path>& inputs) const;
 
   /// For a folder without the description of a series.
   /// @throws Error (usage) if it has a file that this series would replace, or that is read with the series
   void requireFree() const;
 
-  /// Removes the present series from the folder: its description, and the files that its journal lists. Files
-  /// that this series writes may be there: they are replaced.
-  /// @throws Error (usage) if a reader of the folder would take another volume as part of this series; then
-  /// nothing is removed
+  /// For a folder with the description of a series, before it is resumed or replaced.
+  /// @throws Error (usage) as requireOwn(), of the description and of the list of files; and for a folder
+  /// that has the name of a file
+  void requireOwnDescription() const;
+  /// @throws Error (usage) as requireOwn(), of the volumes of a step
+  void requireOwnFilesOf(int step) const;
+
+  /// Removes the present series from the folder: its description, and the files that its journal lists.
+  /// @throws Error (usage) if one of them, or of those that this series writes, is not as it was written, or
+  /// a reader of the folder would take another volume as part of this series; then nothing is removed
   /// @return permissions that all of its files had: who may read them does not change
   std::filesystem::perms removeOld() const;
 
  private:
-  /// Of the files of this and of the folder's present series, their description included.
-  std::regex names() const;
+  std::string indexName() const { return name_ + ".pvd"; }
   /// Names of the files that this series writes, without its description.
   std::set<std::string> ownNames() const;
   /// A volume file of a step and the channels in it.

@@ -29,15 +29,24 @@ std::vector<ValueRange> rangesFromJson(const Json& json, std::size_t channels) {
   return ranges;
 }
 
+/// The checksum of a record, without the member "crc32" that contains it.
+std::uint32_t checksumOf(Json record) {
+  record.erase("crc32");
+  FileDigest digest;
+  addToDigest(dumpJson(record), digest);
+  return digest.crc32;
+}
+
 std::string lineOf(const StepRecord& record) {
   Json files = Json::array();
   for (const StepRecord::File& file : record.files) {
     files.push_back({{"name", file.name}, {"bytes", file.digest.bytes}, {"crc32", file.digest.crc32}});
   }
-  const Json json{{"step", record.step + 1},
-                  {"range", rangesToJson(record.own)},
-                  {"stored_range", rangesToJson(record.stored)},
-                  {"files", files}};
+  Json json{{"step", record.step + 1},
+            {"range", rangesToJson(record.own)},
+            {"stored_range", rangesToJson(record.stored)},
+            {"files", files}};
+  json["crc32"] = checksumOf(json);
   return dumpJson(json) + "\n";
 }
 
@@ -52,7 +61,14 @@ Count countFrom(const Json& file, const char* key) {
   return value.get<Count>();
 }
 
+StepRecord::File fileFrom(const Json& file) {
+  return {file.at("name").get<std::string>(),
+          {countFrom<std::uint64_t>(file, "bytes"), countFrom<std::uint32_t>(file, "crc32")}};
+}
+
 StepRecord recordFrom(const Json& json, int steps, std::size_t channels) {
+  if (json.contains("crc32") && json["crc32"] != checksumOf(json))  // lines of earlier versions have none
+    throw std::invalid_argument("it was changed since it was written");
   StepRecord record;
   const auto number = json.at("step").get<double>();
   if (!(number >= 1 && number <= steps)) {
@@ -61,11 +77,7 @@ StepRecord recordFrom(const Json& json, int steps, std::size_t channels) {
   record.step = static_cast<int>(number) - 1;
   record.own = rangesFromJson(json.at("range"), channels);
   record.stored = rangesFromJson(json.at("stored_range"), channels);
-  for (const Json& file : json.at("files")) {
-    record.files.push_back(
-        {file.at("name").get<std::string>(),
-         {countFrom<std::uint64_t>(file, "bytes"), countFrom<std::uint32_t>(file, "crc32")}});
-  }
+  for (const Json& file : json.at("files")) record.files.push_back(fileFrom(file));
   return record;
 }
 
@@ -86,8 +98,9 @@ std::vector<std::optional<StepRecord>> SeriesJournal::read(int steps, std::size_
   const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(wholeLines(bytes));
   int line = 1;
   const auto fail = [&](const std::string& fault) {
-    throw Error(ErrorCode::bad_input, {file_.string(), line},
-                "not a step of the series (" + fault + "); start the series again");
+    throw Error(
+        ErrorCode::bad_input, {file_.string(), line},
+        "not a step of the series (" + fault + "); move the file away: then all steps are computed again");
   };
   for (auto at = bytes.begin(); at != end; ++line) {
     const auto line_end = std::find(at, end, '\n');
@@ -107,21 +120,46 @@ std::vector<std::optional<StepRecord>> SeriesJournal::read(int steps, std::size_
   return records;
 }
 
-std::set<std::string> SeriesJournal::fileNames() const {
-  std::set<std::string> names;
-  if (!std::filesystem::exists(file_)) return names;
+std::map<std::string, FileDigest> SeriesJournal::files() const {
+  std::map<std::string, FileDigest> listed;
+  if (!std::filesystem::is_regular_file(file_)) return listed;
   const auto bytes = readWhole(file_);
   for (auto begin = bytes.begin(); begin != bytes.end();) {
     const auto end = std::find(begin, bytes.end(), '\n');
     const Json line = Json::parse(begin, end, nullptr, /*allow_exceptions=*/false);
     const Json files = line.is_object() ? line.value("files", Json()) : Json();
     for (const Json& file : files.is_array() ? files : Json::array()) {
-      const Json name = file.is_object() ? file.value("name", Json()) : Json();
-      if (name.is_string()) names.insert(name.get<std::string>());
+      try {
+        const StepRecord::File found = fileFrom(file);
+        listed[found.name] = found.digest;
+      } catch (const std::exception&) {
+        continue;  // of another form
+      }
     }
     begin = end == bytes.end() ? end : end + 1;
   }
-  return names;
+  return listed;
+}
+
+void SeriesJournal::requireOwn() const {
+  if (std::filesystem::is_symlink(file_))
+    throw Error(ErrorCode::usage, {file_.string()}, "is a link, which is not followed; remove it");
+  if (!std::filesystem::exists(file_)) return;
+  const auto bytes = readWhole(file_);
+  const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(wholeLines(bytes));
+  int line = 1;
+  for (auto at = bytes.begin(); at != end; ++line) {
+    const auto line_end = std::find(at, end, '\n');
+    const Json json = Json::parse(at, line_end, nullptr, /*allow_exceptions=*/false);
+    // Lines of earlier versions have no checksum.
+    if (!json.is_object() || !json.contains("files") ||
+        (json.contains("crc32") && json["crc32"] != checksumOf(json))) {
+      throw Error(ErrorCode::usage, {file_.string(), line},
+                  "is no line that emscape wrote, or was changed since; move the file away, or use another "
+                  "folder");
+    }
+    at = line_end + 1;
+  }
 }
 
 void SeriesJournal::append(const StepRecord& record) {

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -37,8 +37,11 @@ class SeriesJournal {
   /// @throws Error (bad_input) that names file and line for any other invalid line
   std::vector<std::optional<StepRecord>> read(int steps, std::size_t channels) const;
 
-  /// Names of the files that the readable lines of the journal list, for a series of any description.
-  std::set<std::string> fileNames() const;
+  /// The files that the readable lines of the journal list, for a series of any description.
+  std::map<std::string, FileDigest> files() const;
+
+  /// @throws Error (usage) for a link, and for a line that is not as append() wrote it
+  void requireOwn() const;
 
   /// Adds a record. @throws Error (other)
   void append(const StepRecord& record);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 bool isOfSeries(const fs::path& input, const fs::path& folder) {
   std::error_code ignored;
   return fs::is_directory(input, ignored) || input.extension() == ".pvd" ||
-         SeriesJournal(folder).fileNames().count(input.filename().string()) > 0;
+         SeriesJournal(folder).files().count(input.filename().string()) > 0;
 }
 
 /// The reason why the scenario is not that of the series; empty if it is.

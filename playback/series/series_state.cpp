@@ -94,12 +94,20 @@ bool hasSeriesState(const std::filesystem::path& folder) {
 std::optional<SeriesState> readSeriesState(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kStateFile;
   if (!hasSeriesState(folder)) return std::nullopt;
-  return readJson<Json>(readWholeText(file), file.string(), fromJson,
-                        ": not the state of a series; start the series again");
+  const std::string remedy = ": not the state of a series; use another folder";
+  std::string text;
+  try {
+    text = readWholeText(file);
+  } catch (const Error& error) {
+    throw Error(error.code(), error.location(), error.message() + remedy);
+  }
+  return readJson<Json>(text, file.string(), fromJson, remedy);
 }
 
 void writeSeriesState(const std::filesystem::path& folder, const SeriesState& state) {
-  writeWhole(folder / kStateFile, [&state](std::ostream& out) { out << dumpJson(toJson(state), 2) << '\n'; });
+  writeWhole(
+      folder / kStateFile, [&state](std::ostream& out) { out << dumpJson(toJson(state), 2) << '\n'; },
+      Replaces::any);
 }
 
 int stepsOf(const SeriesState& state) {
@@ -121,7 +129,7 @@ void checkSameRecipe(const std::filesystem::path& folder, const SeriesState& fou
   }
   if (found.channels != wanted.channels) {
     throw Error(ErrorCode::bad_input, {file},
-                "damaged: 'ranges' does not contain each quantity once; start the series again");
+                "damaged: 'ranges' does not contain each quantity once; use another folder");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "base/files/file_digest.h"
 #include "base/files/folder.h"
 #include "base/files/folder_lock.h"
+#include "base/files/own_file.h"
 #include "base/files/unfinished_file.h"
 #include "base/worker.h"
 #include "emscape/base/error.h"
@@ -138,7 +139,6 @@ class SeriesWriter {
     ranges_.assign(state_.channels.size(), options_.range.value_or(ValueRange{}));
     const std::optional<SeriesState> found = readSeriesState(options_.folder);
     if (!found) {
-      fs::remove(options_.folder / "series.steps");
       writeSeriesState(options_.folder, state_);
       return;
     }
@@ -146,6 +146,7 @@ class SeriesWriter {
       throw Error(ErrorCode::usage, options_.folder.string() + " holds a series");
     }
     checkSameRecipe(options_.folder, *found, state_);
+    files_.requireOwnDescription();
     steps_ = journal_.read(series_.count(), state_.channels.size());
     checkFiles();
     const bool is_whole =
@@ -155,32 +156,46 @@ class SeriesWriter {
 
   /// Drops the steps whose files do not match the journal.
   void checkFiles() {
-    int finished = 0, forgotten = 0;
+    int finished = 0;
     std::string first_forgotten;
-    for (std::optional<StepRecord>& step : steps_) {
-      if (!step) continue;
+    std::vector<std::optional<StepRecord>*> forgotten;
+    for (std::size_t n = 0; n < steps_.size(); ++n) {
+      std::optional<StepRecord>& step = steps_[n];
+      if (!step) {
+        files_.requireOwnFilesOf(static_cast<int>(n));
+        continue;
+      }
       stopIfAsked();
-      const std::string wrong = firstWrongFile(*step);
+      const std::vector<std::string> wrong = wrongFiles(*step);
       if (wrong.empty()) {
         ++finished;
         continue;
       }
-      if (forgotten++ == 0) first_forgotten = wrong;
-      step.reset();
+      // Before the first file is removed: those that the user changed stay.
+      for (const std::string& name : wrong) requireOwn(options_.folder / name);
+      if (forgotten.empty()) first_forgotten = wrong.front();
+      forgotten.push_back(&step);
     }
-    if (forgotten > 0) {
+    for (std::optional<StepRecord>* const step : forgotten) {
+      for (const std::string& name : files_.namesOf((*step)->step)) {
+        const fs::path file = options_.folder / name;
+        if (fs::is_regular_file(fs::symlink_status(file))) fs::remove(file);
+      }
+      step->reset();
+    }
+    if (!forgotten.empty()) {
       logWarning(
           fmt::format("{} of the finished steps are computed again, as files of theirs are missing or not as "
                       "they were written: {}{}",
-                      forgotten, first_forgotten, forgotten > 1 ? ", ..." : ""));
+                      forgotten.size(), first_forgotten, forgotten.size() > 1 ? ", ..." : ""));
     }
     if (finished > 0) logInfo(fmt::format("{} of {} steps are there already", finished, series_.count()));
   }
 
-  /// Empty if all files match the journal.
-  std::string firstWrongFile(const StepRecord& step) const {
-    std::vector<std::string> expected = files_.namesOf(step.step);
-    for (const std::string& name : expected) {
+  /// The files that do not match the journal.
+  std::vector<std::string> wrongFiles(const StepRecord& step) const {
+    std::vector<std::string> wrong;
+    for (const std::string& name : files_.namesOf(step.step)) {
       const auto file =
           std::find_if(step.files.begin(), step.files.end(),
                        [&](const StepRecord::File& candidate) { return candidate.name == name; });
@@ -188,10 +203,10 @@ class SeriesWriter {
       std::error_code error;
       if (file == step.files.end() || fs::file_size(path, error) != file->digest.bytes || error ||
           digestOf(path) != file->digest) {
-        return name;
+        wrong.push_back(name);
       }
     }
-    return "";
+    return wrong;
   }
 
   void addToRange(const std::vector<ValueRange>& own) {
@@ -224,6 +239,7 @@ class SeriesWriter {
       });
       tell("computing", found + ++computed);
     }
+    const WorkPart part("writing the last files", 0, 0);
     writer.finish();
     return computed;
   }
@@ -232,7 +248,7 @@ class SeriesWriter {
   void write(const std::vector<volume::Volume>& volumes, StepRecord record) {
     files_.write(record.step, volumes, record.stored, fogRange(record));
     for (const std::string& name : files_.namesOf(record.step)) {
-      record.files.push_back({name, digestOf(options_.folder / name)});
+      record.files.push_back({name, recordedDigestOf(options_.folder / name)});
     }
     journal_.append(record);
     steps_[static_cast<std::size_t>(record.step)] = std::move(record);
@@ -258,7 +274,7 @@ class SeriesWriter {
         stopIfAsked();
         const std::set<std::string> changed = files_.setRanges(step->step, ranges_);
         for (StepRecord::File& file : step->files) {
-          if (changed.count(file.name) != 0) file.digest = digestOf(options_.folder / file.name);
+          if (changed.count(file.name) != 0) file.digest = recordedDigestOf(options_.folder / file.name);
         }
         step->stored = ranges_;
         journal_.append(*step);

@@ -39,6 +39,13 @@ std::uint32_t parseHost(const std::string& text, const std::string& option) {
   return ntohl(at.sin_addr.s_addr);
 }
 
+void requireMulticast(const Address& address, const std::string& option) {
+  if (address.isMulticast()) return;
+  throw Error(ErrorCode::usage, fmt::format("{} goes with a multicast group (224.0.0.0 to 239.255.255.255); "
+                                            "{} is an address of one computer or network",
+                                            option, address.hostText()));
+}
+
 Address parseAddress(const std::string& text, const std::string& option) {
   const std::size_t colon = text.rfind(':');
   const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);

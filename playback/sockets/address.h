@@ -23,6 +23,8 @@ struct Address {
 /// @param option  for the message
 /// @throws Error (usage)
 Address parseAddress(const std::string& text, const std::string& option);
+/// @param option  that goes with groups alone @throws Error (usage) for another address
+void requireMulticast(const Address& address, const std::string& option);
 /// Reads a host alone. @throws Error (usage)
 std::uint32_t parseHost(const std::string& text, const std::string& option);
 

@@ -151,6 +151,7 @@ struct LiveBattlefield::Impl {
     } else {
       datagrams.emplace(request.address, request.interface);
     }
+    maker.writeBase();
     restart();
     try {
       receiver = std::thread([this] { request.connects ? receiveText() : receiveDatagrams(); });
@@ -231,6 +232,7 @@ struct LiveBattlefield::Impl {
     StreamStatus now = received;
     now.entities = state->objectCount();
     const std::optional<double> arrival_s = last_s;
+    if (recorder) recorder->keepUp();
     const std::string failure = recorder ? recorder->failure() : "";
     state_lock.unlock();
     if (is_other) rebuild.set();
@@ -279,6 +281,10 @@ struct LiveBattlefield::Impl {
 
   void fail(const std::string& text) {
     connection.reset();
+    {
+      const std::lock_guard<std::mutex> lock(state_mutex);
+      if (recorder) recorder->flush();
+    }
     is_due = true;
     told_s = 0;  // at once
     const std::lock_guard<std::mutex> lock(mutex);
@@ -393,7 +399,12 @@ struct LiveBattlefield::Impl {
 
   BattlefieldNow now() const {
     const std::lock_guard<std::mutex> lock(mutex);
-    return {scenario->loaded.scenario, poses, told_last_s.value_or(0)};
+    return {scenario->loaded.scenario, poses, told_last_s.value_or(0), hasStopped()};
+  }
+
+  /// With the mutex.
+  bool hasStopped() const {
+    return told_last_s && steadyTime_s() - *told_last_s > formatOf(request.kind).silence_s;
   }
 
   StreamStatus status() const {
@@ -412,8 +423,7 @@ struct LiveBattlefield::Impl {
       result.trouble += (result.trouble.empty() ? "" : "; ") + text;
     };
     add(connection_trouble);
-    if (connection_trouble.empty() && result.age_s && *result.age_s > formatOf(request.kind).silence_s)
-      add("the stream has stopped");
+    if (connection_trouble.empty() && hasStopped()) add("the stream has stopped");
     if (time_s - lost_at_s < 5)
       add(fmt::format("it comes faster than it can be read, {} lost",
                       countText(result.lost, "datagram", "datagrams")));

@@ -68,6 +68,7 @@ struct BattlefieldNow {
   std::shared_ptr<const scenario::Scenario> scenario;  ///< without the poses; another object: other platforms
   NamedPosesPtr poses;                                 ///< the same object as before if nothing has moved
   double arrival_s = 0;                                ///< of the last record in it (steady clock)
+  bool has_stopped = false;                            ///< no record came for StreamFormat::silence_s
 };
 
 /// Receives a stream on a thread of its own and keeps the present battlefield.

@@ -84,9 +84,18 @@ LiveScenarioMaker::LiveScenarioMaker(const StreamRequest& request)
   } else {
     makeFolder(request.folder);
     file_ = (fs::path(request.folder) / "live.yaml").string();
-    if (!request.replaces) requireNew({file_, fs::path(request.folder) / "live.vdb"});
+    if (!request.replaces) requireNew({file_, fs::path(request.folder) / kLiveField});
   }
+}
+
+void LiveScenarioMaker::writeBase() const {
   scenario::saveScenario(*base_.scenario, file_);
+  if (!request_.replaces) return;
+  // The field is another one's from now on.
+  const fs::path field = fs::path(file_).parent_path() / kLiveField;
+  std::error_code ignored;
+  const fs::file_type type = fs::symlink_status(field, ignored).type();
+  if (type == fs::file_type::regular || type == fs::file_type::symlink) fs::remove(field, ignored);
 }
 
 LiveScenarioMaker::~LiveScenarioMaker() {

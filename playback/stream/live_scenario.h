@@ -27,6 +27,9 @@ struct LiveScenario {
   std::vector<std::string> silent, untold;  ///< platforms of the base (StreamStatus)
 };
 
+/// File of the field that `emscape live` computes, beside the scenario's.
+constexpr const char* kLiveField = "live.vdb";
+
 /// Makes scenarios from a base, in a file of a folder of its own.
 class LiveScenarioMaker {
  public:
@@ -37,6 +40,9 @@ class LiveScenarioMaker {
   LiveScenarioMaker& operator=(const LiveScenarioMaker&) = delete;
 
   const std::string& file() const { return file_; }
+  /// Writes the base into the file, and removes a field that is to be replaced: when the stream can be
+  /// received. @throws Error
+  void writeBase() const;
   /// The base alone.
   std::shared_ptr<const LiveScenario> base() const;
   /// @param before  the last poses: platforms of the base that the recording lacks stay there, absent

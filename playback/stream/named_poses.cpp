@@ -11,10 +11,12 @@ PlatformIndices platformIndices(const scenario::Scenario& scenario) {
   return indices;
 }
 
-PosesPtr posesOf(const PlatformIndices& indices, const std::vector<NamedPose>& poses, double arrival_s) {
+PosesPtr posesOf(const PlatformIndices& indices, const std::vector<NamedPose>& poses, double arrival_s,
+                 bool has_stopped) {
   auto found = std::make_shared<StreamedPoses>();
   found->platforms.reserve(poses.size());
   found->told = arrival_s > 0 ? "live, " + utcTextOf(arrival_s) : "live, nothing received";
+  if (has_stopped) found->told += ", stopped";
   for (const NamedPose& pose : poses) {
     if (!pose.position.height_msl_m) continue;  // it has had no sound pose yet
     const auto at = indices.find(pose.platform);

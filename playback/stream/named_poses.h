@@ -25,6 +25,8 @@ PlatformIndices platformIndices(const scenario::Scenario& scenario);
 
 /// The poses for a scenario; those of other platforms are left out.
 /// @param arrival_s  of the last record in them (steady clock); 0: none came
-PosesPtr posesOf(const PlatformIndices& indices, const std::vector<NamedPose>& poses, double arrival_s);
+/// @param has_stopped  the stream, since then
+PosesPtr posesOf(const PlatformIndices& indices, const std::vector<NamedPose>& poses, double arrival_s,
+                 bool has_stopped = false);
 
 }  // namespace emscape::playback

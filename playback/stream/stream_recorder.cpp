@@ -8,6 +8,8 @@
 
 #include "base/files/whole_file.h"
 #include "emscape/base/error.h"
+#include "emscape/base/log.h"
+#include "playback/stream/steady_time.h"
 
 namespace emscape::playback {
 namespace {
@@ -25,12 +27,25 @@ const std::string& checked(const std::string& file, const std::string& ending, b
 }  // namespace
 
 StreamRecorder::StreamRecorder(const std::string& file, const std::string& ending, bool replaces)
-    : file_(checked(file, ending, replaces)), disk_(file_.temporary()) {
+    : file_(checked(file, ending, replaces), replaces ? Replaces::any : Replaces::nothing),
+      replaces_(replaces),
+      disk_(file_.temporary()),
+      appended_s_(steadyTime_s()) {
   if (ending == ".pcap") capture_ = std::make_unique<interop::dis::CaptureWriter>(stream_);
+  if (!replaces_) publish();
+}
+
+StreamRecorder::~StreamRecorder() {
+  if (!is_finished_ && is_published_ && written_bytes_ == 0) file_.withdraw();
+}
+
+void StreamRecorder::publish() {
+  if (!std::exchange(is_published_, true)) file_.publish();
 }
 
 void StreamRecorder::write(const std::uint8_t* bytes, std::size_t size, double time_s) {
   if (!failure_.empty() || is_finished_) return;
+  has_record_ = true;
   if (capture_) {
     constexpr std::size_t kLargest = 65535 - 28;  // with its headers
     datagram_.assign(bytes, bytes + std::min(size, kLargest));
@@ -42,24 +57,52 @@ void StreamRecorder::write(const std::uint8_t* bytes, std::size_t size, double t
   if (stream_.tellp() >= kAtOnce_bytes) append();
 }
 
+void StreamRecorder::keepUp() {
+  if (steadyTime_s() - appended_s_ >= 1) flush();
+}
+
+void StreamRecorder::flush() {
+  if (failure_.empty() && stream_.tellp() > 0) append();
+}
+
 void StreamRecorder::append() {
+  if (replaces_ && !has_record_) return;  // the head of a file is no reason to replace another one
   const std::string bytes = stream_.str();
   stream_.str("");
+  appended_s_ = steadyTime_s();
   try {
     disk_.append(bytes);
     written_bytes_ += bytes.size();
+    publish();
   } catch (const Error& error) {
-    const std::string text = error.what();  // of the temporary file
-    failure_ = file_.file().string() + ": the recording ends here: " + text.substr(text.find("cannot write"));
-    disk_.cut(written_bytes_);
+    endBecauseOf(error);
   }
+}
+
+void StreamRecorder::endBecauseOf(const Error& error) {
+  const std::string text = error.what();  // of the temporary file
+  failure_ = file_.file().string() + ": the recording ends here: " +
+             text.substr(std::min(text.find("cannot write"), text.rfind(": ") + 2));
+  try {
+    disk_.cut(written_bytes_);
+  } catch (const Error&) {  // it ends with a part of a record
+  }
+  logWarning(failure_);
 }
 
 void StreamRecorder::finish() {
   if (std::exchange(is_finished_, true)) return;
   if (failure_.empty()) append();
-  if (failure_.empty() || written_bytes_ > 0) file_.publish();
-  if (!failure_.empty()) throw Error(ErrorCode::other, failure_);
+  if (failure_.empty()) {
+    try {
+      disk_.sync();
+      return;
+    } catch (const Error& error) {
+      endBecauseOf(error);
+    }
+  }
+  if (is_published_ && written_bytes_ == 0) file_.withdraw();
+  throw Error(ErrorCode::other, failure_);
 }
 
 }  // namespace emscape::playback

@@ -294,7 +294,26 @@ void writeViewState(const std::string& file, const ViewState& state) {
   renameFiles(stored, [&](const std::string& name) { return nameInView(name, file); });
   const std::string text = viewStateText(stored);
   parseViewState(text, file);
-  writeWhole(file, [&text](std::ostream& out) { out << text; });
+  writeWhole(
+      file, [&text](std::ostream& out) { out << text; }, Replaces::any);
+}
+
+std::vector<std::string> missingMapFiles(const ViewState& view) {
+  std::vector<std::string> files = view.places, missing;
+  if (!view.drape.empty() && view.drape != scenario::kLandCoverDrape) files.push_back(view.drape);
+  std::copy_if(files.begin(), files.end(), std::back_inserter(missing), [](const std::string& file) {
+    std::error_code ignored;
+    return !fs::exists(file, ignored);
+  });
+  return missing;
+}
+
+void requireMapFiles(const ViewState& view, const ViewState& before) {
+  const std::vector<std::string> known = missingMapFiles(before);
+  for (const std::string& file : missingMapFiles(view)) {
+    if (std::find(known.begin(), known.end(), file) == known.end())
+      throw Error(ErrorCode::bad_input, {file}, "no such file");
+  }
 }
 
 }  // namespace emscape::playback

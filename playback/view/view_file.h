@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "emscape/playback/view/view_state.h"
 
@@ -22,5 +23,10 @@ std::string viewStateText(const ViewState& state);
 /// @throws Error (bad_input) for a state that cannot be read again, such as a camera outside its limits;
 /// (other) if the file cannot be written
 void writeViewState(const std::string& file, const ViewState& state);
+
+/// The files of places and of the picture on the ground that do not exist.
+std::vector<std::string> missingMapFiles(const ViewState& view);
+/// @throws Error (bad_input) that names the first of them that `before` does not have
+void requireMapFiles(const ViewState& view, const ViewState& before = {});
 
 }  // namespace emscape::playback

@@ -11,10 +11,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "base/math/fast_math.h"
+#include "base/math/lanes.h"
 #include "base/math/simd.h"
 #include "propagation/diffraction/bullington_lanes.h"
 #include "propagation/diffraction/smooth_earth.h"
@@ -22,21 +22,26 @@
 namespace emscape::propagation {
 namespace {
 
-constexpr int kLanes = 16;
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
-using LaneBits = std::uint32_t __attribute__((vector_size(kLanes * sizeof(float))));
+/// Vectors of some lanes. Not wider than the processor's: g++ 12 computes the maxima of others one by one.
+template <int kLanes>
+struct LaneTypes;
+template <>
+struct LaneTypes<16> {
+  using Floats = float __attribute__((vector_size(64)));
+  using Bits = std::uint32_t __attribute__((vector_size(64)));
+};
+template <>
+struct LaneTypes<8> {
+  using Floats = float __attribute__((vector_size(32)));
+  using Bits = std::uint32_t __attribute__((vector_size(32)));
+};
+constexpr int kMostLanes = 16;
 
-// Lanes are parameters by reference: as values they have no calling convention on all processors.
-
-void load(const float* numbers, Lanes& lanes) {
-  std::memcpy(&lanes, numbers, sizeof lanes);
-}
-void store(const Lanes& lanes, float* numbers) {
-  std::memcpy(numbers, &lanes, sizeof lanes);
-}
+template <class Lanes>
 void setAll(float number, Lanes& lanes) {
   lanes = Lanes{} + number;
 }
+template <class Lanes>
 void takeLarger(const Lanes& other, Lanes& largest) {
   largest = other > largest ? other : largest;
 }
@@ -44,28 +49,32 @@ void takeLarger(const Lanes& other, Lanes& largest) {
 template <class Vector>
 void halve(const float* numbers, Vector& larger) {
   Vector other;
-  std::memcpy(&larger, numbers, sizeof larger);
-  std::memcpy(&other, numbers + sizeof larger / sizeof(float), sizeof other);
+  load(numbers, larger);
+  load(numbers + sizeof larger / sizeof(float), other);
   larger = other > larger ? other : larger;
 }
+template <class Lanes>
 float largestOf(const Lanes& lanes) {
-  float numbers[kLanes];
+  float numbers[sizeof lanes / sizeof(float)];
   float __attribute__((vector_size(32))) eight;
   float __attribute__((vector_size(16))) four;
   store(lanes, numbers);
-  halve(numbers, eight);
-  std::memcpy(numbers, &eight, sizeof eight);
+  if constexpr (sizeof lanes > sizeof eight) {
+    halve(numbers, eight);
+    store(eight, numbers);
+  }
   halve(numbers, four);
   const float first = four[0] > four[1] ? four[0] : four[1], second = four[2] > four[3] ? four[2] : four[3];
   return first > second ? first : second;
 }
 
 /// 1 / sqrt(x) for normal x > 0. @accuracy 2e-7 of itself
+template <class LaneBits, class Lanes>
 void inverseRoot(const Lanes& x, Lanes& root) {
   LaneBits bits;
-  std::memcpy(&bits, &x, sizeof bits);
+  load(&x, bits);
   bits = 0x5f375a86u - (bits >> 1);
-  std::memcpy(&root, &bits, sizeof root);
+  store(bits, &root);
   const Lanes half = 0.5f * x;
   for (int i = 0; i < 3; ++i) root *= 1.5f - half * root * root;
 }
@@ -73,11 +82,10 @@ void inverseRoot(const Lanes& x, Lanes& root) {
 /// The posts of a profile between the transmitter and the receivers over its end. Heights are above the first
 /// post unless stated otherwise; "plain" values leave out the earth's bulge, and the clutter by which a
 /// profile is raised.
+template <int kLanes>
 class LaneColumn {
  public:
-  static constexpr int kArrays = 7;
-
-  /// @param memory  kArrays arrays
+  /// @param memory  kLaneArrays arrays
   /// @param size    of each: a multiple of kLanes, at least the number of the profile's posts
   LaneColumn(const DiffractionExcess& excess, const ExcessColumn& column, float* memory, std::size_t size)
       : model_(excess.model),
@@ -120,6 +128,9 @@ class LaneColumn {
   }
 
  private:
+  using Lanes = typename LaneTypes<kLanes>::Floats;
+  using LaneBits = typename LaneTypes<kLanes>::Bits;
+
   /// The first number for which `is` holds, and with it for those above; count: for none.
   template <class Is>
   static int firstOf(int count, const Is& is) {
@@ -179,7 +190,7 @@ class LaneColumn {
       load(posts_.above_tx_m + i, above);
       load(posts_.plain_tx_m + i, plain);
       const Lanes beyond = distance_m_ - range, product = range * beyond;
-      inverseRoot(product, root);
+      inverseRoot<LaneBits>(product, root);
       const Lanes over_root = (above + model_.half_curvature * product) * root, per_range = beyond * root;
       takeLarger(per_range * over_root, tx);
       takeLarger(per_range * (over_root + clearance), clear);
@@ -392,12 +403,15 @@ class LaneColumn {
   bool has_trend_ = false;
 };
 
-EMSCAPE_SIMD_CLONES unsigned fillInLanes(const DiffractionExcess& excess, const ExcessColumn& column,
-                                         float* memory, std::size_t size, float* excess_db) {
+constexpr int kLaneArrays = 7;
+
+template <int kLanes>
+unsigned fillBy(const DiffractionExcess& excess, const ExcessColumn& column, float* memory, std::size_t size,
+                float* excess_db) {
   int lossy = 0;
   bool is_known = true;
   if (column.profile.count > 1) {
-    LaneColumn receivers(excess, column, memory, size);
+    LaneColumn<kLanes> receivers(excess, column, memory, size);
     is_known = receivers.isKnown();
     if (is_known) lossy = receivers.fill(excess_db);
   }
@@ -405,14 +419,34 @@ EMSCAPE_SIMD_CLONES unsigned fillInLanes(const DiffractionExcess& excess, const 
   return is_known ? 0 : kMissingTerrain;
 }
 
+/// @param lanes  kMostLanes or 8
+EMSCAPE_SIMD_CLONES unsigned fill(const DiffractionExcess& excess, const ExcessColumn& column, int lanes,
+                                  float* memory, std::size_t size, float* excess_db) {
+  return lanes == kMostLanes ? fillBy<kMostLanes>(excess, column, memory, size, excess_db)
+                             : fillBy<8>(excess, column, memory, size, excess_db);
+}
+
+bool has16Lanes() {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx512vl") != 0;
+#else
+  return false;
+#endif
+}
+
 }  // namespace
+
+unsigned DiffractionExcess::fillByLanes(int lanes, const ExcessColumn& column, float* excess_db) const {
+  thread_local std::vector<float> memory;
+  const std::size_t size = (static_cast<std::size_t>(column.profile.count) / kMostLanes + 1) * kMostLanes;
+  if (memory.size() < kLaneArrays * size) memory.resize(kLaneArrays * size);
+  return fill(*this, column, lanes, memory.data(), size, excess_db);
+}
 
 unsigned DiffractionExcess::operator()(const ExcessColumn& column, const ExcessScratch&,
                                        float* excess_db) const {
-  thread_local std::vector<float> memory;
-  const std::size_t size = (static_cast<std::size_t>(column.profile.count) / kLanes + 1) * kLanes;
-  if (memory.size() < LaneColumn::kArrays * size) memory.resize(LaneColumn::kArrays * size);
-  return fillInLanes(*this, column, memory.data(), size, excess_db);
+  static const int lanes = has16Lanes() ? kMostLanes : 8;
+  return fillByLanes(lanes, column, excess_db);
 }
 
 }  // namespace emscape::propagation

@@ -19,52 +19,45 @@ bool isItmUnknown(const TerrainProfile& profile) {
 
 }  // namespace
 
-/// Heights of a profile at equal distances, in parts of which the intervals are found first: among the far
-/// posts, which are equally far apart, from the spacing.
+/// Heights of a profile at equal distances. Among the far posts, which are equally far apart, intervals are
+/// found from the spacing.
 inline void ItmExcess::spaceEvenlyInLanes(const TerrainProfile& profile, int intervals,
                                           float* heights_msl_m) {
-  constexpr int kPart = 64;
   const double* const ranges_m = profile.range_m;
   const float* const posts_msl_m = profile.height_msl_m;
   const int last = profile.count - 1, last_even = last - 1;
-  const double length_m = ranges_m[last];
+  const double length_m = ranges_m[last], interval_m = length_m / intervals;
   const double step_m = last > 2 ? ranges_m[last_even] - ranges_m[last_even - 1] : 1, per_step = 1 / step_m;
   int even = 0;  // the first of the far posts
 #pragma omp simd reduction(max : even)
   for (int i = 0; i < last_even; ++i) {
     const double even_m = ranges_m[last_even] - step_m * (last_even - i);
-    const int beyond = std::fabs(even_m - ranges_m[i]) < 0.01 * step_m ? 0 : i + 1;
+    const int beyond = std::fabs(even_m - ranges_m[i]) < 1e-5 * step_m ? 0 : i + 1;
     even = beyond > even ? beyond : even;
   }
   const double even_m = ranges_m[even];
-  int after = 1;
-  for (int first = 0; first <= intervals; first += kPart) {
-    const int count = std::min(kPart, intervals + 1 - first);
-    double at_m[kPart];
-    int after_of[kPart];
+  int first = 0;  // beyond the first of the far posts
+  for (int after = 1; first <= intervals; ++first) {
+    const double at_m = length_m * first / intervals;
+    if (at_m > even_m) break;
+    while (after < last && ranges_m[after] < at_m) ++after;
+    const double before_m = ranges_m[after - 1];
+    const auto part = static_cast<float>((at_m - before_m) / (ranges_m[after] - before_m));
+    const float before = posts_msl_m[after - 1];
+    heights_msl_m[first] = before + part * (posts_msl_m[after] - before);
+  }
+  const double last_even_m = ranges_m[last_even], last_step_m = length_m - last_even_m;
+  const double per_last_m = last_step_m > 0 ? 1 / last_step_m : 0;
+  const int even_steps = last_even - even;
 #pragma omp simd
-    for (int n = 0; n < count; ++n) at_m[n] = length_m * (first + n) / intervals;
-    if (at_m[0] > even_m) {
-#pragma omp simd
-      for (int n = 0; n < count; ++n) {
-        const int steps = even + static_cast<int>((at_m[n] - even_m) * per_step);
-        const int nearest = steps < last_even ? steps + 1 : last_even;  // or one of its neighbours
-        const int more = ranges_m[nearest] < at_m[n] ? 1 : 0, less = ranges_m[nearest - 1] < at_m[n] ? 0 : 1;
-        after_of[n] = nearest + more - less;
-      }
-    } else {
-      for (int n = 0; n < count; ++n) {
-        while (after < last && ranges_m[after] < at_m[n]) ++after;
-        after_of[n] = after;
-      }
-    }
-#pragma omp simd
-    for (int n = 0; n < count; ++n) {
-      const double before_m = ranges_m[after_of[n] - 1];
-      const auto part = static_cast<float>((at_m[n] - before_m) / (ranges_m[after_of[n]] - before_m));
-      const float before = posts_msl_m[after_of[n] - 1];
-      heights_msl_m[first + n] = before + part * (posts_msl_m[after_of[n]] - before);
-    }
+  for (int n = first; n <= intervals; ++n) {
+    const double at_m = n * interval_m, steps = (at_m - even_m) * per_step;
+    const int whole = static_cast<int>(steps);
+    const bool is_last = whole >= even_steps;
+    const int before = even + (is_last ? even_steps : whole);
+    const auto part = static_cast<float>(is_last ? (at_m - last_even_m) * per_last_m : steps - whole);
+    const float before_msl_m = posts_msl_m[before];
+    heights_msl_m[n] = before_msl_m + part * (posts_msl_m[before + 1] - before_msl_m);
   }
 }
 
@@ -82,7 +75,7 @@ EMSCAPE_SIMD_CLONES unsigned ItmExcess::operator()(const ExcessColumn& column, c
   }
   spaceEvenlyInLanes(column.profile, evenIntervals(column.profile), scratch.even_ground_msl_m);
   const ItmProfile<float> even = evenProfile(column, scratch);
-  ItmColumn statistics(even, scratch.post_numbers, scratch.post_numbers + scratch.posts);
+  ItmColumn statistics(even, linkTo(column, 0), scratch.post_numbers, scratch.post_numbers + scratch.posts);
   float* const itm_db = scratch.other_db;
   int in_zone = 0;
   while (in_zone < column.count && isInZone(column, in_zone)) ++in_zone;

@@ -263,9 +263,8 @@ EMSCAPE_HD ItmResult<Real> itmPointToPoint(const ItmProfile<Height>& profile, co
   if (!(profile.intervals >= 2 && profile.step_m > 0) || !statistics.hasEveryHeight()) {
     return refuse(result, ItmStatus::profile);
   }
+  result.path = statistics.medium(link);
   for (int end = 0; end < 2; ++end) result.path.terminal[end].height_agl_m = link.height_agl_m[end];
-  itmSetMedium(result.path, link.frequency_hz, link.vertical_polarization, link.relative_permittivity,
-               link.conductivity_s_m, link.sea_level_refractivity, statistics.meanHeight_m());
   itmSetTerrain(result.path, profile, statistics);
   finish(link, quantiles, result);
   return result;

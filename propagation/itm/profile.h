@@ -400,7 +400,14 @@ struct ProfileStatistics {
   const ItmProfile<Height>& profile;
 
   EMSCAPE_HD bool hasEveryHeight() const { return itm_detail::hasEveryHeight(profile); }
-  EMSCAPE_HD Real meanHeight_m() const { return itm_detail::meanHeight_m<Real>(profile); }
+  /// A path with what depends on ground, atmosphere and frequency.
+  template <class Link>
+  EMSCAPE_HD ItmPath<Real> medium(const Link& link) const {
+    ItmPath<Real> path;
+    itmSetMedium(path, link.frequency_hz, link.vertical_polarization, link.relative_permittivity,
+                 link.conductivity_s_m, link.sea_level_refractivity, meanHeight_m<Real>(profile));
+    return path;
+  }
   EMSCAPE_HD HorizonDistances findHorizons(ItmPath<Real>& path) const {
     return itm_detail::findHorizons(profile, path);
   }

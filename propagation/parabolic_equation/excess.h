@@ -10,18 +10,13 @@
 
 namespace emscape::propagation {
 
-/// Warning bits, followed by fractions in thousandths (kPePartBits each).
+/// Warning bits.
 enum PeWarning : unsigned {
   kPePointwiseAir = 1,
   kPeDuctOverLand = 2,  ///< the path has land, over which the evaporation duct is left out
   kPeProfileEnds = 4,   ///< the air was measured up to less than the antenna's or the field's height
   kPeNearObstacle = 8   ///< of a single path: ground above the ray within two steps of an end
 };
-constexpr int kPePartBits = 10;
-constexpr int kPeStaircaseShift = 4;                             ///< staircasePart()
-constexpr int kPeBehindShift = kPeStaircaseShift + kPePartBits;  ///< of the marches behind too steep ground
-constexpr int kPeHoldsShift = kPeBehindShift + kPePartBits;  ///< max_angle_deg that holds most of it; 0: none
-constexpr int kPeHoldsBits = 6;
 
 /// Interpolates in dB between azimuths, ranges (cubic) and heights; outside the equation's limits other
 /// models are used.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -16,13 +17,22 @@
 #include "propagation/parabolic_equation/air/refractivity_field.h"
 #include "propagation/parabolic_equation/march/march_step.h"
 #include "propagation/parabolic_equation/plan.h"
-#include "propagation/parabolic_equation/warnings.h"
 #include "propagation/two_ray/model.h"
 
 namespace emscape::propagation {
 namespace {
 
 constexpr auto kPe = &ModelSettings::parabolic_equation;
+
+/// @param median  of the same inputs
+P1812Model<float> scatterModel(const PathInputs& inputs, const DiffractionModel<float>& median) {
+  P1812Model<float> scatter;
+  scatter.clear_air.frequency_ghz = static_cast<float>(inputs.emitter.frequency_hz / 1e9);
+  scatter.clear_air.time_percent = 50;
+  scatter.clear_air.median = median;
+  scatter.sea_level_refractivity = static_cast<float>(inputs.emitter.atmosphere.sea_level_refractivity);
+  return scatter;
+}
 
 PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bool has_terrain,
                   double site_ground_msl_m, double max_angle_rad) {
@@ -41,12 +51,7 @@ PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bo
   smooth.surface_msl_m = 0;
   smooth.emitter.settings.two_ray.roughness_model = settings.roughness;
   others.two_ray = twoRayExcess(smooth);
-  others.scatter = {};
-  others.scatter.clear_air.frequency_ghz = static_cast<float>(inputs.emitter.frequency_hz / 1e9);
-  others.scatter.clear_air.time_percent = 50;
-  others.scatter.clear_air.median = others.diffraction.model;
-  others.scatter.sea_level_refractivity =
-      static_cast<float>(inputs.emitter.atmosphere.sea_level_refractivity);
+  others.scatter = scatterModel(inputs, others.diffraction.model);
   return others;
 }
 
@@ -102,36 +107,108 @@ void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& fie
   });
 }
 
+/// The first range step whose ground the antenna sees above the equation's largest angle; `steps`: none.
+int firstSteepStep(const PeOthers& others, double max_angle_rad, const float* ground_msl_m, int steps,
+                   double step_m) {
+  constexpr float kMargin = 1.05f;  // a column between two azimuths may see a little past both
+  for (int i = 1; i < steps; ++i) {
+    const auto range_m = static_cast<float>(i * step_m);
+    if (range_m >= PeSight::kNearGround_m &&
+        others.launchAngle(range_m, ground_msl_m[i]) >= kMargin * static_cast<float>(max_angle_rad))
+      return i;
+  }
+  return steps;
+}
+
 /// Ends the marches beyond ground that the antenna sees above the equation's largest angle: the field passes
 /// it at larger angles, for which other models are used (PeOthers::equationPart()).
-/// @return fraction of the marches' length that is left
-double endBehindSteepGround(const PeOthers& others, const PePlan& plan, FieldMarch& field) {
-  constexpr float kMargin = 1.05f;  // a column between two azimuths may see a little past both
+void endBehindSteepGround(const PeOthers& others, const PePlan& plan, FieldMarch& field) {
   AzimuthMarch& march = field.march;
   const auto azimuths = std::size_t(plan.azimuths);
   std::vector<int> reached(azimuths, plan.cells.ranges);
   for (std::size_t a = 0; a < azimuths; ++a) {
     checkpoint();
-    const float* const ground_msl_m = march.ground_msl_m.data() + a * march.ground_steps;
-    for (std::size_t i = 1; i < march.ground_steps; ++i) {
-      const auto range_m = static_cast<float>(double(i) * plan.grid.range_step_m);
-      if (range_m < PeSight::kNearGround_m ||
-          others.launchAngle(range_m, ground_msl_m[i]) < kMargin * others.max_angle_rad)
-        continue;
-      reached[a] = int(double(range_m) / plan.cells.range_step_m) + 2;
-      break;
-    }
+    const double step_m = plan.grid.range_step_m;
+    const int first =
+        firstSteepStep(others, plan.max_angle_rad, march.ground_msl_m.data() + a * march.ground_steps,
+                       int(march.ground_steps), step_m);
+    if (first < int(march.ground_steps))
+      reached[a] = int(double(static_cast<float>(first * step_m)) / plan.cells.range_step_m) + 2;
   }
   if (march.ranges.empty()) march.ranges.assign(azimuths, plan.cells.ranges);
-  const auto length = [&] { return std::accumulate(march.ranges.begin(), march.ranges.end(), 0.0); };
-  const double whole = length();
   for (std::size_t a = 0; a < azimuths; ++a) {
     const std::size_t before = a > 0 ? a - 1 : plan.is_around ? azimuths - 1 : a;
     const std::size_t behind = a + 1 < azimuths ? a + 1 : plan.is_around ? 0 : a;
     march.ranges[a] = std::min(march.ranges[a], std::max({reached[before], reached[a], reached[behind]}));
     field.known_ranges[a] = std::min(field.known_ranges[a], march.ranges[a]);
   }
-  return whole > 0 ? length() / whole : 1;
+}
+
+/// @param others  of the antenna
+/// @param steps   of the ground, without the antenna's
+SteepAzimuth steepAzimuth(const PeOthers& others, double max_angle_rad, const MarchGrid& grid,
+                          double azimuth_rad, const float* ground_msl_m, int steps) {
+  const int marched = firstSteepStep(others, max_angle_rad, ground_msl_m, steps, grid.range_step_m);
+  const double part =
+      staircasePart(ground_msl_m, marched, grid.range_step_m, grid.maxSine(), grid.slope_part);
+  return {azimuth_rad, steps * grid.range_step_m, part * marched * grid.range_step_m,
+          (steps - marched) * grid.range_step_m};
+}
+
+/// The inputs of SteepGround::with() for a field.
+struct SteepMarches {
+  PathInputs inputs;
+  RadialInputs radials;
+  DomainNeeds needs;
+  PeOthers others;
+  int members = 1;  ///< of the air's ensemble
+  std::vector<double> azimuths_rad, lengths_m;
+
+  std::vector<SteepAzimuth> with(double max_angle_deg) const {
+    PathInputs other = inputs;
+    other.emitter.settings.parabolic_equation.max_angle_deg = max_angle_deg;
+    std::vector<SteepAzimuth> found;
+    try {
+      const PePlan plan = planWithoutAir(other, radials, needs, members);
+      const double step_m = plan.grid.range_step_m;
+      for (std::size_t a = 0; a < azimuths_rad.size(); ++a) {
+        const int steps = int(lengths_m[a] / step_m);
+        std::vector<float> ground_msl_m(std::size_t(steps) + 1);
+        radials.ground(azimuths_rad[a], radials.farthest_m, step_m, steps + 1, ground_msl_m.data());
+        ground_msl_m[0] = static_cast<float>(radials.site_ground_msl_m);
+        found.push_back(
+            steepAzimuth(others, plan.max_angle_rad, plan.grid, azimuths_rad[a], ground_msl_m.data(), steps));
+      }
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_input) throw;
+      found.clear();
+    }
+    return found;
+  }
+};
+
+/// @param field  whose marches do not yet end behind steep ground
+SteepGround steepGround(const PathInputs& inputs, const RadialInputs& radials, const DomainNeeds& needs,
+                        const PeOthers& others, const PePlan& plan, const FieldMarch& field) {
+  constexpr int kMaxAzimuths = 64;
+  const AzimuthMarch& march = field.march;
+  const auto tried = std::make_shared<SteepMarches>(
+      SteepMarches{inputs, radials, needs, others, int(plan.air.size()), {}, {}});
+  SteepGround steep;
+  steep.max_angle_deg = radToDeg(plan.max_angle_rad);
+  steep.is_automatic = inputs.emitter.settings.parabolic_equation.max_angle_deg <= 0;
+  const int apart = (plan.azimuths + kMaxAzimuths - 1) / kMaxAzimuths;
+  for (int a = 0; a < plan.azimuths; a += apart) {
+    const double length_m = march.rangesOf(a) * plan.cells.range_step_m;
+    const int steps = std::min(int(length_m / plan.grid.range_step_m), int(march.ground_steps) - 1);
+    steep.azimuths.push_back(steepAzimuth(others, plan.max_angle_rad, plan.grid, plan.azimuth_rad(a),
+                                          march.ground_msl_m.data() + std::size_t(a) * march.ground_steps,
+                                          steps));
+    tried->azimuths_rad.push_back(plan.azimuth_rad(a));
+    tried->lengths_m.push_back(steep.azimuths.back().whole_m);
+  }
+  steep.with = [tried](double max_angle_deg) { return tried->with(max_angle_deg); };
+  return steep;
 }
 
 /// Ground that is above mean sea level only where it is land by its cover.
@@ -214,7 +291,6 @@ struct OtherColumn {
 /// A march along one path.
 struct PathMarch {
   double factor_db = 0;
-  unsigned warnings = 0;
   std::string text;
 };
 
@@ -245,10 +321,64 @@ bool hasNearObstacle(const TerrainProfile& profile, double begin_msl_m, double e
   return false;
 }
 
+/// Range steps of equal length along a path.
+int fitSteps(double range_m, MarchGrid& grid) {
+  const int steps = int(std::ceil(range_m / grid.range_step_m - 1e-9));
+  grid.range_step_m = range_m / steps;
+  return steps;
+}
+
+/// The inputs of SteepGround::with() for a path.
+struct SteepPath {
+  EmitterInputs emitter;
+  RefractivityAlongPath air;
+  DomainNeeds needs;
+  double range_m = 0, azimuth_rad = 0;
+  std::vector<double> ranges_m;
+  std::vector<float> heights_msl_m;
+
+  SteepAzimuth over(MarchGrid grid) const {
+    const int steps = fitSteps(range_m, grid);
+    const std::vector<float> ground_msl_m =
+        evenGround({ranges_m.data(), heights_msl_m.data(), int(ranges_m.size())}, grid.range_step_m, steps);
+    const double part =
+        staircasePart(ground_msl_m.data(), steps, grid.range_step_m, grid.maxSine(), grid.slope_part);
+    return {azimuth_rad, range_m, part * range_m, 0};
+  }
+  std::vector<SteepAzimuth> with(double max_angle_deg) const {
+    EmitterInputs other = emitter;
+    other.settings.parabolic_equation.max_angle_deg = max_angle_deg;
+    try {
+      double max_angle_rad = 0;
+      return {over(planGrid(other, air, needs, max_angle_rad).grid)};
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_input) throw;
+      return {};
+    }
+  }
+};
+
+SteepGround steepGround(const PathInputs& inputs, const ExcessColumn& column,
+                        const RefractivityAlongPath& air, const DomainNeeds& needs, const MarchGrid& grid,
+                        double max_angle_rad) {
+  const TerrainProfile& profile = column.profile;
+  const auto path =
+      std::make_shared<SteepPath>(SteepPath{inputs.emitter,
+                                            air,
+                                            needs,
+                                            column.range_m,
+                                            column.azimuth_rad,
+                                            {profile.range_m, profile.range_m + profile.count},
+                                            {profile.height_msl_m, profile.height_msl_m + profile.count}});
+  return {radToDeg(max_angle_rad),
+          inputs.emitter.settings.parabolic_equation.max_angle_deg <= 0,
+          {path->over(grid)},
+          [path](double max_angle_deg) { return path->with(max_angle_deg); }};
+}
+
 PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const RefractivityAlongPath& air,
                     MarchGrid grid, bool has_terrain) {
-  const int steps = int(std::ceil(column.range_m / grid.range_step_m - 1e-9));
-  grid.range_step_m = column.range_m / steps;
+  const int steps = fitSteps(column.range_m, grid);
   const TerrainProfile& profile = column.profile;
   PathMarch found;
   double power = 0;
@@ -262,10 +392,6 @@ PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const 
     if (has_terrain) {
       std::vector<float> ground_msl_m = evenGround(profile, grid.range_step_m, steps);
       path.ground_msl_m.assign(ground_msl_m.begin(), ground_msl_m.end());
-      found.warnings = staircaseWarning(grid, [&](const MarchGrid& other) {
-        return staircasePart(ground_msl_m.data(), steps, other.range_step_m, other.maxSine(),
-                             other.slope_part);
-      });
       const std::vector<float> cover_m = evenCover(profile, grid.range_step_m, steps);
       if (!cover_m.empty()) separateSea(ground_msl_m, cover_m.data());
       path.air = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), grid.range_step_m);
@@ -314,6 +440,32 @@ std::vector<Setting> peSettings() {
   return settings;
 }
 
+std::vector<std::string> peWarningMessages(unsigned warnings) {
+  std::vector<std::string> messages;
+  if (warnings & kPePointwiseAir) {
+    messages.emplace_back(
+        "profiles of the air with different numbers of levels are interpolated at each height: halfway "
+        "between two ducts there are two faint ones");
+  }
+  if (warnings & kPeDuctOverLand) {
+    messages.emplace_back(
+        "the evaporation duct is left out over land (above mean sea level, or a 'ground' that is not water)");
+  }
+  if (warnings & kPeProfileEnds) {
+    messages.emplace_back(
+        "the profile of the air ends below the antenna or the top of the field: above it the air is "
+        "standard");
+  }
+  if (warnings & kPeNearObstacle) {
+    messages.emplace_back(
+        "ground rises above the ray within two range steps of an end, where the march hardly resolves it: "
+        "the "
+        "loss may be wrong by 20 dB and more, and differ as much with the ends exchanged; compare with "
+        "'diffraction'");
+  }
+  return messages;
+}
+
 InputFaults checkPe(const EmitterInputs& inputs) {
   InputFaults faults;
   checkInput(kPeFrequency, inputs.frequency_hz, InputOrigin::frequency, faults);
@@ -323,11 +475,12 @@ InputFaults checkPe(const EmitterInputs& inputs) {
 }
 
 std::vector<ModelChoice> peChoices(const PathInputs& inputs, const RadialInputs& radials) {
-  return planMarch(inputs, radials).choices;
+  return planMarch(inputs, radials, domainNeeds(inputs, radials)).choices;
 }
 
 PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
-  const PePlan plan = planMarch(inputs, radials);
+  const DomainNeeds needs = domainNeeds(inputs, radials);
+  const PePlan plan = planMarch(inputs, radials, needs);
   FieldMarch field;
   AzimuthMarch& march = field.march;
   march.grid = plan.grid;
@@ -346,9 +499,10 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   PeExcess excess;
   excess.others = othersOf(inputs, plan.air.front().front(), radials.has_terrain, radials.site_ground_msl_m,
                            plan.max_angle_rad);
+  std::optional<SteepGround> steep;
   if (radials.has_terrain) {
-    excess.warnings |= partWarning(1 - endBehindSteepGround(excess.others, plan, field), kPeBehindShift);
-    excess.warnings |= staircaseWarning(plan, march);
+    steep = steepGround(inputs, radials, needs, excess.others, plan, field);
+    endBehindSteepGround(excess.others, plan, field);
   }
   excess.others.min_range_m = static_cast<float>(plan.min_range_m);
   if (!cells.are_points) {
@@ -377,7 +531,21 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   const double field_msl_m = radials.highest_m + (radials.above_ground ? radials.highest_ground_msl_m : 0);
   for (const RefractivityAlongPath& air : plan.air.front())
     excess.warnings |= airWarnings(air, over_land, std::max(field_msl_m, inputs.site.height_msl_m));
-  return {excess, std::move(field)};
+  return {excess, std::move(field), std::move(steep)};
+}
+
+double troposcatterDb(const PathInputs& inputs, const ExcessColumn& column, double end_msl_m) {
+  PeOthers others;
+  others.tx_msl_m = static_cast<float>(inputs.site.height_msl_m);
+  others.scatter = scatterModel(inputs, diffractionExcess(inputs).model);
+  const auto posts = static_cast<std::size_t>(column.profile.count);
+  std::vector<float> ranges_m(posts), grounds_m(posts);
+  PeLoss loss;
+  loss.equation_db = HUGE_VALF;
+  others.addScatter(static_cast<float>(column.range_m),
+                    others.sightOf(column, {ranges_m.data(), grounds_m.data()}),
+                    static_cast<float>(end_msl_m), loss);
+  return static_cast<double>(loss.scatter_db);
 }
 
 Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
@@ -420,8 +588,9 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       const PathMarch march = marchPath(inputs, column, member, automatic.grid, has_terrain);
       losses_db.push_back(static_cast<float>(-march.factor_db));
       march_text = march.text;
-      path.addWarnings(march.warnings);
     }
+    if (has_terrain)
+      explanation.steep = steepGround(inputs, column, air, needs, automatic.grid, max_angle_rad);
     if (has_terrain && hasNearObstacle(profile, inputs.site.height_msl_m, double(end_msl_m), column.range_m,
                                        automatic.grid.range_step_m))
       path.addWarnings(kPeNearObstacle);
@@ -433,9 +602,12 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
   others.addScatter(static_cast<float>(column.range_m), sight, end_msl_m, loss);
   const bool over_land = has_terrain ? *highest > 0 : isLand(inputs.emitter.ground);
   path.addWarnings(airWarnings(air, over_land, std::max(double(end_msl_m), inputs.site.height_msl_m)));
-  if (loss.equation_part > 0)
-    explanation.add("parabolic_equation", "parabolic equation",
+  if (loss.equation_part > 0) {
+    const bool is_floor = loss.mechanism(has_terrain) == Mechanism::floor;
+    explanation.add(is_floor ? "floor" : "parabolic_equation",
+                    is_floor ? "parabolic equation, at its floor (floor_db)" : "parabolic equation",
                     double(loss.equation_part * loss.equation_db));
+  }
   if (loss.equation_part < 1)
     explanation.add(std::string("outside_equation_") + other_name,
                     fmt::format("{} outside the equation's limits", other_name),

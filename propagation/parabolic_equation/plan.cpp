@@ -104,7 +104,8 @@ bool areSameAir(const std::vector<RefractivityAlongPath>& air) {
   return std::all_of(air.begin(), air.end(), [&](const auto& other) { return other == air.front(); });
 }
 
-void planAzimuths(const PathInputs& inputs, const RadialInputs& radials, PePlan& plan) {
+/// @return why so many
+std::string planAzimuths(const PathInputs& inputs, const RadialInputs& radials, PePlan& plan) {
   const double given = inputs.emitter.settings.parabolic_equation.azimuths;
   const double voxel_rad = std::max(radials.spacing_m, plan.grid.range_step_m) / radials.farthest_m;
   const double one_apart = std::ceil(radials.azimuth_span_rad / voxel_rad);
@@ -122,6 +123,11 @@ void planAzimuths(const PathInputs& inputs, const RadialInputs& radials, PePlan&
   plan.first_azimuth_rad = radials.first_azimuth_rad;
   const int gaps = plan.is_around ? plan.azimuths : std::max(plan.azimuths - 1, 1);
   plan.azimuth_step_rad = radials.azimuth_span_rad / gaps;
+  return why;
+}
+
+/// @param why  planAzimuths()
+void planAir(const PathInputs& inputs, const RadialInputs& radials, std::string why, PePlan& plan) {
   for (int i = 0; i < plan.azimuths; ++i) {
     std::vector<RefractivityAlongPath> members =
         pathAirs(inputs.emitter.atmosphere, inputs.site, plan.azimuth_rad(i));
@@ -192,6 +198,10 @@ void planRanges(const RadialInputs& radials, PePlan& plan) {
       }
     }
   }
+}
+
+RefractivityAlongPath firstAir(const PathInputs& inputs, const RadialInputs& radials) {
+  return highestDuct(pathAirs(inputs.emitter.atmosphere, inputs.site, radials.first_azimuth_rad));
 }
 
 /// The ground along some of the azimuths.
@@ -357,12 +367,8 @@ std::vector<PeSurface> planSurfaces(const EmitterInputs& emitter, const Refracti
   return surfaces;
 }
 
-PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
+DomainNeeds domainNeeds(const PathInputs& inputs, const RadialInputs& radials) {
   constexpr double kClear = 1.1, kMargin_m = 30;  // between the antenna or a summit and the top of the cells
-  RadialInputs radials = given;
-  // Positions of a map are points: close to the ground the field follows the terrain's posts, not the pixels.
-  if (radials.above_ground && radials.has_terrain)
-    radials.spacing_m = std::min(radials.spacing_m, 3 * inputs.post_spacing_m);
   const double source_msl_m = inputs.site.height_msl_m, lowest_m = radials.lowest_ground_msl_m;
   const double highest_m = std::max(radials.highest_ground_msl_m, source_msl_m);
   DomainNeeds needs;
@@ -372,12 +378,21 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   needs.post_spacing_m = radials.has_terrain ? inputs.post_spacing_m : 0;
   needs.farthest_m = radials.farthest_m;
   needs.spacing_m = radials.spacing_m;
+  // Positions of a map are points: close to the ground the field follows the terrain's posts, not the pixels.
+  if (radials.above_ground && radials.has_terrain)
+    needs.spacing_m = std::min(needs.spacing_m, 3 * inputs.post_spacing_m);
   needs.is_narrow = radials.azimuth_span_rad <= kNarrowSector_rad && radials.spacing_m > 0;
+  addGroundNeeds(inputs, radials, 1e-6 * firstAir(inputs, radials).at(0).top_gradient_m, needs);
+  return needs;
+}
 
+namespace {
+
+/// Grid, surfaces and cells.
+PePlan planDomain(const PathInputs& inputs, const RadialInputs& radials, const DomainNeeds& needs) {
+  const double source_msl_m = inputs.site.height_msl_m;
   PePlan plan;
-  const RefractivityAlongPath air =
-      highestDuct(pathAirs(inputs.emitter.atmosphere, inputs.site, radials.first_azimuth_rad));
-  addGroundNeeds(inputs, radials, 1e-6 * air.at(0).top_gradient_m, needs);
+  const RefractivityAlongPath air = firstAir(inputs, radials);
   AutomaticGrid automatic = planGrid(inputs.emitter, air, needs, plan.max_angle_rad);
   plan.grid = automatic.grid;
   plan.choices = std::move(automatic.choices);
@@ -387,7 +402,49 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   if (inputs.emitter.settings.parabolic_equation.source == PeRadiator::pattern)
     plan.choices.push_back({"source", sourceText(inputs.elevation_pattern, plan.max_angle_rad)});
   planCells(radials, inputs.emitter.settings.parabolic_equation.cells, plan);
+  return plan;
+}
+
+struct Cost {
+  double points = 0;  ///< azimuths x steps x heights
+  double cells = 0;   ///< that are kept
+};
+
+/// @param members  of the air's ensemble
+/// @throws Error (bad_input) outside the limits
+Cost affordableCost(const PePlan& plan, double members) {
+  const double lanes = kStepLanes * std::ceil(double(plan.azimuths) / kStepLanes);
+  const double marched = plan.ranges.empty() ? lanes * plan.cells.ranges
+                                             : std::accumulate(plan.ranges.begin(), plan.ranges.end(), 0.0);
+  const double points = members * double(plan.surfaces.size()) * marched *
+                        std::ceil(plan.cells.range_step_m / plan.grid.range_step_m) * plan.grid.intervals;
+  requireWithinLimit(kPeWork, points);
+  const double cells = members * plan.azimuths * plan.cells.ranges * plan.cells.heights;
+  requireWithinLimit(kPeCells, cells);
+  return {points, cells};
+}
+
+RadialInputs spacedBy(const DomainNeeds& needs, RadialInputs radials) {
+  radials.spacing_m = needs.spacing_m;
+  return radials;
+}
+
+}  // namespace
+
+PePlan planWithoutAir(const PathInputs& inputs, const RadialInputs& given, const DomainNeeds& needs,
+                      int members) {
+  const RadialInputs radials = spacedBy(needs, given);
+  PePlan plan = planDomain(inputs, radials, needs);
   planAzimuths(inputs, radials, plan);
+  planRanges(radials, plan);
+  affordableCost(plan, members);
+  return plan;
+}
+
+PePlan planMarch(const PathInputs& inputs, const RadialInputs& given, const DomainNeeds& needs) {
+  const RadialInputs radials = spacedBy(needs, given);
+  PePlan plan = planDomain(inputs, radials, needs);
+  planAir(inputs, radials, planAzimuths(inputs, radials, plan), plan);
   planRanges(radials, plan);
   plan.min_range_m = std::max({2 * plan.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz),
                                2 * plan.cells.meanRange_m()});
@@ -400,15 +457,7 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
                              "{:.2g} degrees at 1 km, "
                              "{:.2g} at 10 km (the band's edge diffracts): elsewhere other models apply",
                              plan.min_range_m, plan.top_msl_m, blurred_deg(1e3), blurred_deg(1e4))});
-  const auto members = double(plan.air.size());
-  const double lanes = kStepLanes * std::ceil(double(plan.azimuths) / kStepLanes);
-  const double marched = plan.ranges.empty() ? lanes * plan.cells.ranges
-                                             : std::accumulate(plan.ranges.begin(), plan.ranges.end(), 0.0);
-  const double points = members * double(plan.surfaces.size()) * marched *
-                        std::ceil(plan.cells.range_step_m / plan.grid.range_step_m) * plan.grid.intervals;
-  requireWithinLimit(kPeWork, points);
-  const double cells = members * plan.azimuths * plan.cells.ranges * plan.cells.heights;
-  requireWithinLimit(kPeCells, cells);
+  const auto [points, cells] = affordableCost(plan, double(plan.air.size()));
   const double time_s = points * secondsPerPoint(radials.has_terrain);
   plan.choices.push_back(
       {"cost",

@@ -105,7 +105,14 @@ struct PePlan {
   double azimuth_rad(int i) const { return first_azimuth_rad + i * azimuth_step_rad; }
 };
 
+/// The domain's needs along the azimuths, for any settings of the model.
+DomainNeeds domainNeeds(const PathInputs& inputs, const RadialInputs& radials);
+/// @param needs  domainNeeds()
 /// @throws Error (bad_input) outside the limits, with the value and the allowed range
-PePlan planMarch(const PathInputs& inputs, const RadialInputs& radials);
+PePlan planMarch(const PathInputs& inputs, const RadialInputs& radials, const DomainNeeds& needs);
+/// The same without the air along the azimuths and what depends on it: over terrain, for trials.
+/// @param members  of the air's ensemble
+PePlan planWithoutAir(const PathInputs& inputs, const RadialInputs& radials, const DomainNeeds& needs,
+                      int members);
 
 }  // namespace emscape::propagation

@@ -2,6 +2,7 @@
 /// explanations and the field.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,9 @@ struct ModelCost {
 
 /// The excess of a model that marches outwards, and the march that makes its tables.
 struct RadialExcess {
-  ExcessModel model;  ///< without its tables, and without the warnings that the march returns
+  ExcessModel model;  ///< without its tables
   FieldMarch march;
+  std::optional<SteepGround> steep;  ///< none: no terrain
 };
 
 struct ModelInfo {

@@ -177,7 +177,7 @@ std::string compareJson(const ScenarioHandle& a, const ScenarioHandle& b, const 
 std::string checkJson(const std::string& folder) {
   refuseForkedProcess();
   const nb::gil_scoped_release unlocked;
-  return dumpJson(report::toJson(report::checkReport(folder, [] {
+  return dumpJson(report::toJson(report::checkReport(folder, [](const std::string&, double) {
     const nb::gil_scoped_acquire locked;
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
   })));

@@ -191,7 +191,7 @@ std::optional<double> takeZone(DateScanner& scanner) {
 
 struct Told {
   double utc_s = 0;
-  bool needs_order = false;
+  bool needs_order = false, has_zone = false;
 };
 
 std::optional<Told> timeTold(std::string_view text, DateOrder order) {
@@ -199,17 +199,21 @@ std::optional<Told> timeTold(std::string_view text, DateOrder order) {
   const auto date = takeDate(scanner, order);
   if (!date || !isDate(date->year, date->month, date->day)) return std::nullopt;
   double clock_s = 0, offset_s = 0;
+  bool has_zone = false;
   if (!scanner.isAtEnd()) {
     scanner.take(',');
     const bool is_apart = scanner.takeBlanks() || scanner.take('T') || scanner.take('t');
     if (!is_apart) return std::nullopt;
     const auto clock = takeClock(scanner);
+    scanner.takeBlanks();
+    has_zone = !scanner.isAtEnd();
     const auto offset = clock ? takeZone(scanner) : std::nullopt;
     if (!offset) return std::nullopt;
     clock_s = *clock;
     offset_s = *offset;
   }
-  return Told{secondsOfDate(date->year, date->month, date->day) + clock_s - offset_s, date->needs_order};
+  return Told{secondsOfDate(date->year, date->month, date->day) + clock_s - offset_s, date->needs_order,
+              has_zone};
 }
 
 }  // namespace
@@ -217,6 +221,12 @@ std::optional<Told> timeTold(std::string_view text, DateOrder order) {
 std::optional<double> utcSeconds(std::string_view text, DateOrder order) {
   const auto told = timeTold(text, order);
   return told && !told->needs_order ? std::optional(told->utc_s) : std::nullopt;
+}
+
+bool hasZone(std::string_view text) {
+  auto told = timeTold(text, DateOrder::unknown);
+  if (!told) told = timeTold("1970-01-01 " + std::string(text), DateOrder::unknown);
+  return told && told->has_zone;
 }
 
 bool needsDateOrder(std::string_view text) {

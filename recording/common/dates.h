@@ -20,6 +20,9 @@ enum class DateOrder { unknown, day_first, month_first };
 /// @return none for another text, and for a date that is another one in the other order if that is not known
 std::optional<double> utcSeconds(std::string_view text, DateOrder order = DateOrder::unknown);
 
+/// True if a date with a time of day, or a time of day alone, says its zone.
+bool hasZone(std::string_view text);
+
 /// True if the text is a date of which the order is needed.
 bool needsDateOrder(std::string_view text);
 

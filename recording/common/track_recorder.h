@@ -17,6 +17,10 @@ namespace emscape::interop {
 /// Faster than any object: a satellite makes 8 km/s. Steps of a track that are shorter count as this.
 constexpr double kFastest_mps = 10e3, kShortestStep_s = 1e-3;
 
+/// Of a time that does not say its zone.
+constexpr const char* kUtcWithoutZone =
+    "time without a zone: taken as UTC; if it is local, write its offset with it (2026-06-01 08:00:00+02:00)";
+
 /// What to do with heights above the ground, for messages.
 constexpr const char* kHeightsAboveGround =
     "'height_agl_m' of a track is one height above the ground for all its positions, and a track file of the "

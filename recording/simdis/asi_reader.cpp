@@ -10,6 +10,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "base/text/unended_line.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "recording/beams/directions.h"
@@ -75,6 +76,7 @@ class AsiReader {
       location_ = fmt::format("line {}", lines.line());
       ++recorder_.tally().records;
       take(lowerCase(words[0]), words);
+      if (!lines.isTerminated()) recorder_.tally().notes.push_back(unendedLineText(lines.line(), "a record"));
     }
     return finish();
   }

@@ -62,8 +62,10 @@ class GpxReader : XmlTracks {
     pose.longitude_deg = *longitude;
     pose.height_msl_m = numberIn(textOf(point, "ele")).value_or(kUnknown);
     if (is_fixed) return recorder_.addFixed(object, pose, location);
-    const auto time_s = utcSeconds(textOf(point, "time"));
+    const std::string time = textOf(point, "time");
+    const auto time_s = utcSeconds(time);
     if (!time_s) return countBad(recorder_.tally(), location, "it has no time (ISO 8601)");
+    if (!hasZone(time)) recorder_.assume(kUtcWithoutZone);
     pose.t_s = *time_s;
     pose.heading_deg = numberIn(textOf(point, "course")).value_or(kUnknown);  // of GPX 1.0
     recorder_.add(object, pose, location);

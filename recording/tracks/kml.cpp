@@ -131,6 +131,7 @@ class KmlReader : XmlTracks {
     if (when.empty()) return recorder_.addFixed(newObject(name), pose, location);
     const auto time_s = utcSeconds(when);
     if (!time_s) return countBad(recorder_.tally(), location, "its time is not ISO 8601");
+    if (!hasZone(when)) recorder_.assume(kUtcWithoutZone);
     pose.t_s = *time_s;
     stamped.push_back({name, location, pose});
   }
@@ -155,6 +156,7 @@ class KmlReader : XmlTracks {
         countBad(recorder_.tally(), location, "no ISO 8601 time, or no position LONGITUDE LATITUDE HEIGHT");
         continue;
       }
+      if (!hasZone(times[i])) recorder_.assume(kUtcWithoutZone);
       PoseSample pose;
       pose.t_s = *time_s;
       pose.longitude_deg = at[0];

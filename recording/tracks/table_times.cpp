@@ -60,6 +60,9 @@ std::optional<double> TableTimes::of(const std::vector<std::string>& cells, cons
   const DateOrder order = date == nullptr ? column.order : table_.columns.at(Column::date).order;
   if (const auto time_s = utcSeconds(text, order)) {
     is_utc_ = true;
+    if (table_.columns.count(Column::utc_offset) == 0 && !isUtc(text))
+      recorder_.assume(std::string(kUtcWithoutZone) +
+                       ", or name a column of offsets: --columns (or 'columns' of a track) utc_offset=NAME");
     return *time_s - offset_s;
   }
   if (needsDateOrder(text)) {
@@ -79,13 +82,12 @@ std::optional<double> TableTimes::of(const std::vector<std::string>& cells, cons
 }
 
 bool TableTimes::isUtc(const std::string& text) const {
-  const std::string name = lowerCase(table_.nameOf(Column::time));
-  for (const char* const word : {"utc", "gmt", "zulu"}) {
-    if (name.find(word) != std::string::npos) return true;
+  std::string names = lowerCase(table_.nameOf(Column::time));
+  if (table_.columns.count(Column::date) != 0) names += " " + lowerCase(table_.nameOf(Column::date));
+  for (const char* const word : {"utc", "gmt", "zulu", "basedatetime"}) {  // the last of MarineCadastre's AIS
+    if (names.find(word) != std::string::npos) return true;
   }
-  const std::size_t clock = text.find(':');
-  return text.find_last_of("Zz") != std::string::npos ||
-         (clock != std::string::npos && text.find_first_of("+-", clock) != std::string::npos);
+  return hasZone(text);
 }
 
 std::optional<double> TableTimes::timeOfDay(const std::string& text) {

@@ -9,6 +9,7 @@
 
 #include "base/geodesy/position_text.h"
 #include "base/text/decimal_signs.h"
+#include "base/text/unended_line.h"
 #include "emscape/base/error.h"
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
@@ -94,9 +95,10 @@ class TableReader {
       } else {
         seeNumbers(cells, lines.line());
         takeRow(cells);
+        if (!lines.isTerminated()) recorder_.tally().notes.push_back(unendedLineText(lines.line(), "a row"));
       }
     }
-    decimal_signs_.require();
+    requireOneDecimalSign();
     if (times_.areUtc()) recorder_.hasUtc();
     recorder_.tellObjectsApartBy(objectsRemedy());
     Recording recording = recorder_.finish();
@@ -108,13 +110,24 @@ class TableReader {
   }
 
  private:
-  /// Where commas separate cells, they are between thousands; see TrackTable::numberOf().
   void seeNumbers(const std::vector<std::string>& cells, long long line) {
-    if (table_.separator == ',') return;
     for (const auto& [column, of_table] : table_.columns) {
       if (column == Column::id || column == Column::position || of_table.index >= cells.size()) continue;
-      decimal_signs_.see(cells[of_table.index], {table_.file, static_cast<int>(line), 0});
+      const std::string& cell = cells[of_table.index];
+      const bool is_coordinate = column == Column::latitude || column == Column::longitude;
+      if (is_coordinate && table_.separator == ',')
+        decimal_signs_.seeCoordinate(cell);
+      else
+        decimal_signs_.see(cell, {table_.file, static_cast<int>(line), 0});
     }
+  }
+
+  /// Where commas separate cells, one within a number is between thousands; see TrackTable::numberOf().
+  void requireOneDecimalSign() const {
+    if (table_.separator == ',')
+      decimal_signs_.requireOneComma();
+    else
+      decimal_signs_.require();
   }
 
   void takeHeader(std::string_view line, long long number) {

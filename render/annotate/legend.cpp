@@ -10,6 +10,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "render/annotate/hatching.h"
+#include "render/annotate/legend_ends.h"
 #include "render/annotate/overlay_parts.h"
 
 namespace emscape::render {
@@ -59,7 +60,7 @@ struct BarTick {
 /// Ticks at round values and at both ends, which take the places of round values near them.
 /// @param count  of round values, about
 /// @param gap    smallest distance of numbers, a part of the bar
-std::vector<BarTick> ticksOf(const Legend& legend, int count, double gap) {
+std::vector<BarTick> ticksOf(const Legend& legend, int count, double gap, LegendEnds ends = {}) {
   const FieldScale& scale = legend.scale;
   const double lowest = legend.function.lowest(), highest = legend.function.highest();
   const double first = scale.shown(lowest), last = scale.shown(highest);
@@ -81,8 +82,11 @@ std::vector<BarTick> ticksOf(const Legend& legend, int count, double gap) {
   for (const auto& [value, at] : {std::pair{lowest, first}, std::pair{highest, last}}) {
     const double unit = std::pow(10, -decimalsOf(step));
     const bool is_close = std::abs(at - std::round(at / unit) * unit) < step / 20;
-    ticks.push_back(
-        {value, scale.is_amplitude ? fmt::format("{:.3g}", at) : tickText(at, is_close ? step : step / 10)});
+    const char* const beyond = value == highest && ends.has_higher ? "≥ "
+                               : value == lowest && ends.has_lower ? "≤ "
+                                                                   : "";
+    ticks.push_back({value, beyond + (scale.is_amplitude ? fmt::format("{:.3g}", at)
+                                                         : tickText(at, is_close ? step : step / 10))});
   }
   return ticks;
 }
@@ -207,14 +211,21 @@ bool drawHatched(Canvas& canvas, const Style& style, const Legend& legend, doubl
 }
 
 /// A line across the bar with an arrowhead at its left end.
-void drawIsoMark(Canvas& canvas, const Style& style, double left, double y, double width) {
+/// @param beyond  -1, 1: the value is above or below the bar; an arrowhead points there from its end
+void drawIsoMark(Canvas& canvas, const Style& style, double left, double y, double width, int beyond) {
   const double head = 6 * style.unit;
+  if (beyond != 0) {
+    const double middle = left + width / 2, base = y + 3 * beyond * style.unit;
+    canvas.polygon({{middle - head, base}, {middle + head, base}, {middle, base + 1.2 * beyond * head}},
+                   style.textInk());
+    return;
+  }
   canvas.line({left, y}, {left + width, y}, style.rimInk(0.9), 4 * style.unit);
   canvas.line({left, y}, {left + width, y}, style.textInk(), 2 * style.unit);
   canvas.polygon({{left - 1.6 * head, y - head}, {left - 1.6 * head, y + head}, {left, y}}, style.textInk());
 }
 
-void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double left) {
+void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double left, LegendEnds ends) {
   const TransferFunction& function = legend.function;
   const double top = topOf(canvas.size(), style, legend);
   const double bottom = kBarBottom * canvas.size().height;
@@ -245,7 +256,7 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
       {{bar_left, top}, {bar_left + bar_width, top}, {bar_left + bar_width, bottom}, {bar_left, bottom}},
       style.mutedInk(0.8), style.unit, true);
   const int count = std::max(2, static_cast<int>((bottom - top) / (kPixelsPerTick * style.unit)));
-  for (const BarTick& tick : ticksOf(legend, count, 1.4 * style.small_px / (bottom - top))) {
+  for (const BarTick& tick : ticksOf(legend, count, 1.4 * style.small_px / (bottom - top), ends)) {
     const double y = yOf(tick.value);
     const double right = bar_left + bar_width;
     canvas.line({right, y}, {right + 5 * style.unit, y}, style.textInk(0.9), 1.2 * style.unit);
@@ -253,9 +264,11 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
                        style.rimInk());
   }
   if (legend.iso_value) {
-    // A value beyond the bar is marked at its end.
-    const double y = std::clamp(yOf(*legend.iso_value), top, bottom);
-    drawIsoMark(canvas, style, bar_left, y, bar_width);
+    const double y = yOf(*legend.iso_value);
+    drawIsoMark(canvas, style, bar_left, std::clamp(y, top, bottom), bar_width,
+                *legend.iso_value > legend.function.highest()  ? -1
+                : *legend.iso_value < legend.function.lowest() ? 1
+                                                               : 0);
   }
   drawHeading(canvas, style, legend, left, top - 10 * style.unit);
   if (largest > 0) {
@@ -464,11 +477,15 @@ PixelArea legendHeading(ImageSize size, const Annotations& annotations) {
 }
 
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend) {
+  drawLegend(canvas, style, legend, {});
+}
+
+void drawLegend(Canvas& canvas, const Style& style, const Legend& legend, LegendEnds ends) {
   const double left = canvas.size().width - kEdge * style.unit - contentWidth(style, legend);
   if (legend.function.categorical) {
     drawCategories(canvas, style, legend, left);
   } else {
-    drawBar(canvas, style, legend, left);
+    drawBar(canvas, style, legend, left, ends);
   }
 }
 

@@ -24,9 +24,9 @@ constexpr const char* kFamilies =
 constexpr const char* kLanguage = "xx";
 constexpr std::size_t kMaxLines = 4096;
 /// Threads of Pango at the same time, at most, for the first text of a font; it ends the program where one is
-/// refused: one that reads the configuration, and two each for the font and its fallbacks, of which those
-/// that are done may not have ended yet on a busy machine.
-constexpr int kThreadsOfPango = 5;
+/// refused: two each for the font and its fallbacks. One before them, that reads the configuration, may not
+/// have ended yet on a busy machine.
+constexpr int kThreadsOfPango = 4;
 /// Of them and their tables; the threads' stacks and heaps are addresses alone.
 constexpr std::size_t kFonts_bytes = std::size_t{96} << 20;
 
@@ -104,6 +104,10 @@ class TextSetter {
 };
 
 }  // namespace
+
+void requireFonts() {
+  TextSetter::instance();
+}
 
 double lineWidth(const std::string& text, double size_px, Weight weight) {
   TextSetter& setter = TextSetter::instance();

@@ -8,6 +8,10 @@
 
 namespace emscape::render {
 
+/// Loads what all texts need: before the first file of work that ends with a picture.
+/// @throws Error (other) where memory is short; std::system_error where Pango's threads cannot be started
+void requireFonts();
+
 /// Advance of a line (pixels). Bytes that are not UTF-8 are drawn as U+FFFD.
 double lineWidth(const std::string& text, double size_px, Weight weight);
 

@@ -1,6 +1,7 @@
 /// Frames cast by the CPU.
 #include <utility>
 
+#include "base/large_array.h"
 #include "base/stopwatch.h"
 #include "render/cpu/raycast_cpu.h"
 #include "render/patterns/adaptive.h"
@@ -11,6 +12,13 @@
 
 namespace emscape::render {
 namespace {
+
+/// Gives a picture a size, all pixels zero. @throws Stopped
+void reset(Image& image, ImageSize size) {
+  image = {};
+  resizeInParts(image.pixels, static_cast<std::size_t>(size.count()));
+  image.size = size;
+}
 
 class CpuFrameCaster : public FrameCaster {
  public:
@@ -130,7 +138,7 @@ bool CpuFrameCaster::drawAdaptive(const Scene& scene, const FramePlan& plan, boo
 
 FrameReport CpuFrameCaster::draw(const Scene& scene, const FramePlan& plan, ImageSize size,
                                  const StopFlag* stop) {
-  if (picture_.size != size) picture_ = Image(size);
+  if (picture_.size != size) reset(picture_, size);
   if (scene.versions().view != seen_.view) ground_layer_.size = {};
   drawn_ = plan.pattern;
   FrameReport report;
@@ -138,7 +146,7 @@ FrameReport CpuFrameCaster::draw(const Scene& scene, const FramePlan& plan, Imag
   // If the ground is known everywhere, only the volume is interpolated, so that the ground stays sharp.
   const bool in_layers =
       scene.ground() && ground_layer_.size == size && ground_layer_.complete && plan.pattern != Pattern::full;
-  if (in_layers && volume_layer_.size != size) volume_layer_ = Image(size);
+  if (in_layers && volume_layer_.size != size) reset(volume_layer_, size);
   Image& target = in_layers ? volume_layer_ : picture_;
   const bool complete =
       plan.pattern == Pattern::adaptive

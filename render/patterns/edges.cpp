@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/large_array.h"
 #include "base/math/simd.h"
 #include "emscape/base/parallel.h"
 
@@ -57,7 +58,9 @@ std::vector<Pixel> edgePixels(const Image& picture) {
   const ImageSize size = picture.size;
   static_assert(sizeof(Rgba) == 4 * sizeof(float), "a pixel is four floats");
   const std::size_t width = static_cast<std::size_t>(size.width);
-  std::vector<std::uint8_t> levels(4 * picture.pixels.size()), contrasts(picture.pixels.size());
+  std::vector<std::uint8_t> levels, contrasts;
+  resizeInParts(levels, 4 * picture.pixels.size());
+  resizeInParts(contrasts, picture.pixels.size());
   parallelFor(size.height, kBand, [&](int begin, int end) {
     const std::size_t first = begin * width;
     quantizeAll(&picture.pixels[first].r, 4 * (end * width - first), &levels[4 * first]);

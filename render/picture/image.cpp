@@ -159,7 +159,8 @@ std::string encodePng(const Image8& image) {
 void writePng(const std::string& file, const Image8& image) {
   const WorkPart part("writing " + std::filesystem::path(file).filename().string(), 0, 0);
   const std::string encoded = encodePng(image);
-  writeWhole(file, [&](std::ostream& out) { out << encoded; });
+  writeWhole(
+      file, [&](std::ostream& out) { out << encoded; }, Replaces::any);
 }
 
 Image8 readPng(const std::string& file) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/large_array.h"
 #include "render/cast/rgba.h"
 
 namespace emscape::render {
@@ -22,22 +23,27 @@ struct GroundLayer {
   std::vector<std::uint8_t> is_mapped;   ///< the colour in `mapped` is known
   bool complete = false;                 ///< no pixel is unknown
 
+  /// @throws Stopped
   void reset(ImageSize image_size) {
-    size = image_size;
-    distances.assign(static_cast<std::size_t>(size.count()), kUnknown);
-    colors.resize(distances.size());
-    is_surface.resize(distances.size());
-    dropMap();
+    size = {};
     complete = false;
+    dropMap();
+    distances.clear();
+    resizeInParts(distances, static_cast<std::size_t>(image_size.count()), kUnknown);
+    resizeInParts(colors, distances.size());
+    resizeInParts(is_surface, distances.size());
+    size = image_size;
   }
   void dropMap() {
     mapped.clear();
     is_mapped.clear();
   }
+  /// @throws Stopped
   void beginMap() {
-    if (!mapped.empty()) return;
-    mapped.resize(colors.size());
-    is_mapped.assign(colors.size(), 0);
+    if (is_mapped.size() == colors.size()) return;
+    is_mapped.clear();
+    resizeInParts(mapped, colors.size());
+    resizeInParts(is_mapped, colors.size());
   }
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * size.width + x; }
 };

@@ -50,7 +50,8 @@ std::string transferFunctionText(const TransferFunction& function) {
 }
 
 void writeTransferFunction(const std::string& file, const TransferFunction& function) {
-  writeWhole(file, [text = transferFunctionText(function)](std::ostream& out) { out << text; });
+  writeWhole(
+      file, [text = transferFunctionText(function)](std::ostream& out) { out << text; }, Replaces::any);
 }
 
 void requireUnitOf(const TransferFunction& function, const volume::VolumeInfo& info) {

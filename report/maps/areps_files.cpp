@@ -72,14 +72,14 @@ void writeTable(std::ostream& out, const char* name, const VerticalDiagram& diag
   }
 }
 
-std::string fileNameOf(const std::string& emitter, double azimuth_deg) {
+}  // namespace
+
+std::string arepsFile(const std::filesystem::path& folder, const std::string& emitter, double azimuth_deg) {
   std::string name;
   for (const char c : emitter.substr(0, 60))
     name += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' ? c : '_';
-  return fmt::format("{}_APM_{:g}.txt", name, azimuth_deg);
+  return folder / fmt::format("{}_APM_{:g}.txt", name, std::fmod(azimuth_deg + 360, 360));
 }
-
-}  // namespace
 
 scenario::Quantity arepsQuantity(const scenario::Emitter& emitter) {
   return emitter.kind == scenario::EmitterKind::radar ? scenario::Quantity::snr_db
@@ -100,7 +100,7 @@ std::vector<std::string> writeAreps(const VerticalDiagram& diagram, const scenar
   std::vector<std::string> files;
   for (const VerticalCut& cut : diagram.cuts) {
     const double azimuth_deg = std::fmod(cut.azimuth_deg + 360, 360);
-    const std::filesystem::path file = folder / fileNameOf(emitter.name, azimuth_deg);
+    const std::string file = arepsFile(folder, emitter.name, azimuth_deg);
     const std::size_t width = diagram.ranges_m.size();
     const auto loss_db = [&](std::size_t i, std::size_t k) {
       return arepsLoss_db(diagram, scenario, cut.values[k * width + i]);
@@ -129,7 +129,7 @@ std::vector<std::string> writeAreps(const VerticalDiagram& diagram, const scenar
         return 2 * ratioToDb(4 * kPi * path_m / wavelength_m(emitter.frequency_hz)) - loss_db(i, k);
       });
     });
-    files.push_back(file.string());
+    files.push_back(file);
   }
   return files;
 }

@@ -10,7 +10,10 @@
 
 namespace emscape::report {
 
-/// Writes a file for each azimuth into a folder, NAME_APM_AZIMUTH.txt: loss and propagation factor of the
+/// FOLDER/NAME_APM_AZIMUTH.txt
+std::string arepsFile(const std::filesystem::path& folder, const std::string& emitter, double azimuth_deg);
+
+/// Writes arepsFile() for each azimuth: loss and propagation factor of the
 /// path to an isotropic antenna, both with the emitter's antenna pattern relative to its gain, and for radars
 /// the largest losses for probabilities of detection of 1 to 100 % (0.999).
 /// @param diagram  of snr_db for a radar, whose beam is on the target, else of power_density_dbwm2; above

@@ -12,6 +12,7 @@
 #include "report/maps/output_files.h"
 #include "report/text.h"
 #include "report/warnings.h"
+#include "study/maps/surface_maps.h"
 
 namespace emscape::report {
 namespace {
@@ -200,6 +201,18 @@ void addSections(study::HtmlReport& report, const study::Comparison& comparison,
 
 }  // namespace
 
+void requireReplaceable(const study::MapFolder& folder, const std::vector<study::CoverageMap>& maps) {
+  std::vector<std::string> names;
+  for (const study::CoverageMap& map : maps) {
+    study::Map change;
+    change.name = study::changeNameOf(map.product);
+    change.height = map.height;
+    change.time_s = map.time_s;
+    names.push_back(fileNameOf(change));
+  }
+  folder.requireReplaceable(names);
+}
+
 ScenarioComparison::ScenarioComparison(std::shared_ptr<const scenario::Scenario> a,
                                        std::shared_ptr<const scenario::Scenario> b, const MapOptions& maps,
                                        int areas, const std::string& folder, const std::string& name_b)
@@ -225,6 +238,7 @@ ScenarioComparison::ScenarioComparison(std::shared_ptr<const scenario::Scenario>
                       request().heights,
                       maps.view},
       maps.formats);
+  requireReplaceable(*folder_, study::outlinesOf(request()));
 }
 
 study::Comparison ScenarioComparison::compute(const emfield::FieldOptions& options,

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "report/json.h"
 #include "report/maps/map_options.h"
@@ -10,6 +11,10 @@
 #include "study/report/map_folder.h"
 
 namespace emscape::report {
+
+/// @param maps  of A, of which the folder is to have the changes
+/// @throws Error (usage) as MapFolder::requireReplaceable()
+void requireReplaceable(const study::MapFolder& folder, const std::vector<study::CoverageMap>& maps);
 
 /// A comparison of two scenarios whose maps and report are written into a folder.
 class ScenarioComparison {

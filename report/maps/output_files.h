@@ -20,14 +20,13 @@ struct NamedFile {
 /// The outputs of an option that may be given several times.
 std::vector<NamedFile> outputsOf(const std::string& option, const std::vector<std::string>& files);
 
-/// Checks that outputs are different, and none of the inputs. Files are the same if they have the same
-/// identity, or the same name if they do not exist. Files that this program did not write are not replaced,
-/// nor texts that only name it: pictures, films and volumes have its mark, tables their headers, JSON files
-/// their keys.
+/// Checks that outputs, with the .json beside volumes of the formats raw and nvdb, are different, and none of
+/// the inputs. Files are the same if they have the same identity, or the same name if they do not exist.
+/// Files that isOwn() denies are not replaced.
 /// @param scenarios     inputs, with the files that they name
 /// @param replaces_any  true: files that exist are the caller's business
 /// @throws Error (usage) that names the option and the file
-void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
+void checkOutputs(const std::vector<NamedFile>& named, const std::vector<NamedFile>& inputs,
                   const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
                   bool replaces_any = false);
 
@@ -36,20 +35,15 @@ void requireFolders(const std::vector<std::string>& files);
 
 /// Checks the folder of a study. @param option  name of the folder, for messages  @param others  further
 /// outputs
-/// @throws Error (usage) as checkOutputs() and checkReports()
+/// @throws Error (usage) as checkOutputs()
 void checkStudyFolder(const std::filesystem::path& folder, const study::StudySpec& study,
                       const std::string& option, const std::vector<NamedFile>& others = {});
-
-/// Checks reports in a folder. @param option  name of the folder, for the message
-/// @throws Error (usage) if one exists that none of `coverage`, `compare` and `study` wrote
-void checkReports(const std::filesystem::path& folder, const std::vector<std::string>& names,
-                  const std::string& option);
 
 /// Checks the folder of `coverage` or `compare`.
 /// @param scenarios  inputs, with the files that they name  @param option  name of the folder, for the
 /// message
-/// @throws Error (usage) if a report would replace a file that neither of them nor `study` wrote, or an input
-/// in the folder's maps/ has the name of a map, which would replace it
+/// @throws Error (usage) as checkOutputs() for the reports, and for an input in the folder's maps/ that
+/// isOwn()
 void checkMapFolder(const std::filesystem::path& folder,
                     const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
                     const std::string& option);

@@ -165,7 +165,10 @@ Json toJson(const StudyReport& report) {
                         {"longitude_deg", site.longitude_deg},
                         {"at_sea_level", site.is_at_sea_level}});
     }
-    json["sites"] = {{"chosen", chosen}, {"places", places}, {"value", report.summary.sites_value}};
+    json["sites"] = {{"chosen", chosen},
+                     {"places", places},
+                     {"value", report.summary.sites_value},
+                     {"equal_candidates", report.summary.equal_sites}};
   }
   return json;
 }
@@ -196,7 +199,8 @@ std::string studyText(const StudyReport& report) {
                            site.longitude_deg,
                            site.is_at_sea_level ? "; the ground there is at sea level: water?" : "");
     const std::string unit = unitOf(spec.measures[spec.sites->measure]);
-    out.add("sites: {}: {} {}\n", names, study::figureText(report.summary.sites_value, unit), unit);
+    out.add("sites: {}: {} {}{}\n", names, study::figureText(report.summary.sites_value, unit), unit,
+            report.summary.equal_sites > 0 ? "; " + study::equalSitesText(report.summary) : "");
   }
   out.add("{}: results.csv, results.nc, report.html\n", report.folder);
   return out.take();

@@ -266,6 +266,12 @@ emfield::LinkReport computeLinks(const std::shared_ptr<const scenario::Scenario>
   if (terrain) {
     for (std::string& warning : terrain->warnings()) report.warnings.push_back(std::move(warning));
   }
+  const std::string missed = scenario::missedActivityText(*scenario, options.times_s);
+  const bool is_told =
+      std::any_of(report.warnings.begin(), report.warnings.end(), [&](const std::string& told) {
+        return told.find(missed) != std::string::npos;  // of the steps, with the same times
+      });
+  if (!missed.empty() && !is_told) report.warnings.push_back(missed);
   int last_radar = -1;  // detections of one radar follow each other
   for (const Detection& detection : report.detections) {
     const scenario::Emitter& radar = scenario->emitters[static_cast<std::size_t>(detection.radar)];

@@ -172,6 +172,16 @@ const emfield::PathBudget* budgetOfSection(const ProfileReport& report) {
   return nullptr;
 }
 
+Json jammersJson(const PathBudget& budget) {
+  Json jammers = Json::array();
+  for (const emfield::PathJammer& jammer : budget.jamming.jammers) {
+    jammers.push_back({{"name", jammer.name},
+                       {"jammer_to_signal_db", number(jammer.to_signal_db)},
+                       {"blanked_part", jammer.blanked_part}});
+  }
+  return jammers;
+}
+
 const scenario::Emitter& emitterOf(const ProfileReport& report) {
   return report.snapshot.scenario->emitters[static_cast<std::size_t>(report.emitter)];
 }
@@ -200,7 +210,9 @@ ProfileReport profileReport(const std::string& file, const scenario::Scenario& s
   const scenario::Snapshot snapshot = scenario::instantAt(with_point, terrain.get(), request.time_s);
   const PathEnd point{snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m};
   const auto budgetBy = [&](propagation::PropagationModel model) {
-    return emfield::pathBudget(snapshot, request.emitter, point, model, terrain.get());
+    PathBudget budget = emfield::pathBudget(snapshot, request.emitter, point, model, terrain.get());
+    emfield::tellSteepGround(budget);
+    return budget;
   };
   const scenario::Emitter& emitter = scenario.emitters[static_cast<std::size_t>(request.emitter)];
   ProfileReport report{file, snapshot, terrain, request.emitter, budgetBy(emitter.propagation.model), {}};
@@ -254,6 +266,7 @@ Json toJson(const ProfileReport& report) {
           {"excess_db", number(budget.excess.loss_db)},
           {"excess_parts_db", excess_parts},
           {"budget", terms},
+          {"jammers", jammersJson(budget)},
           {"compared", compared},
           {"warnings", warnings},
           {"verdict", budget.verdict},

@@ -48,17 +48,20 @@ std::string sourcesOf(const scenario::Scenario& scenario, const scenario::Clutte
 Json waveformJson(const scenario::Scenario& scenario, const scenario::Emitter& emitter) {
   if (!emitter.waveform) return nullptr;
   const Waveform& waveform = *emitter.waveform;
+  const auto ofRadar = [&](const Json& value) {
+    return emitter.kind == scenario::EmitterKind::radar ? value : Json(nullptr);
+  };
   return {{"prf_hz", waveform.prf_hz},
           {"pulse_width_s", waveform.pulse_width_s},
           {"duty_cycle", waveform.dutyCycle()},
           {"mean_power_w", emitter.power_w * waveform.dutyCycle()},
-          {"min_range_m", waveform.minRange_m()},
+          {"min_range_m", ofRadar(waveform.minRange_m())},
           {"instrumented_range_m", number(waveform.instrumented_range_m)},
-          {"unambiguous_range_m", waveform.unambiguousRange_m()},
-          {"first_blind_speed_mps", waveform.firstBlindSpeed_mps(emitter.frequency_hz)},
-          {"hits_per_scan",
-           number(scenario::hitsPerScan(emitter.scan, emitter.antenna->beamwidth_az_deg, waveform.prf_hz))},
-          {"pulses", emitter.receiver.pulses},
+          {"unambiguous_range_m", ofRadar(waveform.unambiguousRange_m())},
+          {"first_blind_speed_mps", ofRadar(waveform.firstBlindSpeed_mps(emitter.frequency_hz))},
+          {"hits_per_scan", ofRadar(number(scenario::hitsPerScan(
+                                emitter.scan, emitter.antenna->beamwidth_az_deg, waveform.prf_hz)))},
+          {"pulses", ofRadar(emitter.receiver.pulses)},
           {"clutter", clutterJson(scenario, emitter)}};
 }
 
@@ -73,6 +76,7 @@ void addWaveform(Text& out, const scenario::Scenario& scenario, const scenario::
   line("power",
        fmt::format("{} peak, {} mean (duty cycle {:.4g} %)", quantityText(emitter.power_w, "W"),
                    quantityText(emitter.power_w * waveform.dutyCycle(), "W"), 100 * waveform.dutyCycle()));
+  if (emitter.kind != scenario::EmitterKind::radar) return;
   line("unambiguous range", fmt::format("{:.3f} km", repeat_km));
   if (waveform.instrumented_range_m)
     line("instrumented range", fmt::format("{:.3f} km", *waveform.instrumented_range_m / 1000));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "report/text.h"
 
 namespace emscape::report {
@@ -30,11 +31,13 @@ bool CheckReport::pass() const {
                      [](const Outcome& outcome) { return outcome.check.pass(); });
 }
 
-CheckReport checkReport(const std::string& folder, const std::function<void()>& next) {
+CheckReport checkReport(const std::string& folder, const ProgressSink& progress) {
   CheckReport report;
   report.folder = emfield::findDatasets(folder);
+  double done = 0;
   for (const emfield::ReferenceDataset* dataset : report.folder.present) {
-    next();
+    progress("figures", done++ / static_cast<double>(report.folder.present.size()));
+    const WorkPart part(dataset->name, 0, 0);
     if (dataset->check == nullptr) {
       report.not_checked.push_back(dataset->name);
       continue;
@@ -45,6 +48,7 @@ CheckReport checkReport(const std::string& folder, const std::function<void()>& 
       report.unreadable.push_back({dataset->name, error.what()});
     }
   }
+  progress("figures", 1);
   return report;
 }
 

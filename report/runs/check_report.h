@@ -1,11 +1,11 @@
 /// The propagation models against reference figures, as JSON and text.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "emfield/check/reference_check.h"
+#include "emscape/base/progress.h"
 #include "report/json.h"
 
 namespace emscape::report {
@@ -28,9 +28,10 @@ struct CheckReport {
   bool pass() const;
 };
 
-/// Runs the datasets of a folder. @param next  called before each; an exception that it throws ends the work
+/// Runs the datasets of a folder. @param progress  called before each; an exception that it throws ends the
+/// work
 /// @throws Error (bad_input) for a folder without known datasets
-CheckReport checkReport(const std::string& folder, const std::function<void()>& next);
+CheckReport checkReport(const std::string& folder, const ProgressSink& progress);
 Json toJson(const CheckReport& report);
 std::string checkText(const CheckReport& report);
 

@@ -18,6 +18,7 @@
 #include "emscape/base/units.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "propagation/registry/model_info.h"
+#include "scenario/scan/scan_sweep.h"
 #include "scenario/scan/swept_antenna.h"
 #include "scenario/terrain/view.h"
 
@@ -165,8 +166,9 @@ double triedPositions(const Scenario& scenario, const Emitter& emitter, const sc
 }
 
 /// Time (ns) of an emitter's contribution to a channel at one voxel.
+/// @param jammers  that are active, on average
 double voxel_ns(const emfield::FieldPlan& plan, std::size_t channel, int e,
-                const std::optional<emfield::IntervalBeam>& beam) {
+                const std::optional<emfield::IntervalBeam>& beam, double jammers) {
   const emfield::ChannelPlan& of_channel = plan.channel_plans[channel];
   const Emitter& emitter = plan.scenario->emitters[static_cast<std::size_t>(e)];
   if (of_channel.occupancy_threshold_wm2 > 0) {
@@ -174,10 +176,6 @@ double voxel_ns(const emfield::FieldPlan& plan, std::size_t channel, int e,
                                          static_cast<double>(of_channel.occupancy_threshold_wm2));
   }
   if (of_channel.reducesPower()) return kPower_ns;
-  const auto& radars = plan.scenario->emitters;
-  const auto jammers = std::count_if(radars.begin(), radars.end(), [](const Emitter& other) {
-    return other.kind == scenario::EmitterKind::jammer;
-  });
   double arcs = 0;
   if (beam) {
     const emfield::IntervalArcs& found = beam->looks.arcs;
@@ -186,8 +184,17 @@ double voxel_ns(const emfield::FieldPlan& plan, std::size_t channel, int e,
   const std::optional<emfield::ClutterMapTask> map = clutterMapOf(*plan.scenario, emitter);
   const double trips = map ? map->grid.trips.count : 1;
   const bool has_jamming = scenario::needsJammer(plan.channels[channel].quantity);
-  return kEcho_ns + (has_jamming ? kJammer_ns * double(jammers) : 0) +
-         (emitter.clutter ? kClutter_ns : 0) * trips + kArc_ns * arcs;
+  return kEcho_ns + (has_jamming ? kJammer_ns * jammers : 0) + (emitter.clutter ? kClutter_ns : 0) * trips +
+         kArc_ns * arcs;
+}
+
+/// True if an emitter is active at a step: at its time, or at some time of its interval.
+bool isActiveAtStep(const Scenario& scenario, const Emitter& emitter, double t_s) {
+  if (!emitter.enabled) return false;
+  const double duration_s =
+      scenario::intervalDuration_s(scenario.output.interval, emitter.scan, scenario.clock);
+  return duration_s > 0 ? !scenario::activeTimes(scenario, emitter, t_s, duration_s).empty()
+                        : scenario::isActiveAt(emitter, t_s);
 }
 
 /// How often in a run the fields of channels are computed anew.
@@ -195,57 +202,97 @@ class ChangedSteps {
  public:
   ChangedSteps(const emfield::FieldPlan& plan, const std::vector<double>& times_s)
       : plan_(plan), steps_(double(times_s.size())) {
+    // Of a long clock some steps, each with the one before.
+    constexpr std::size_t kMostSteps = 1000;
+    const std::size_t stride = 1 + times_s.size() / kMostSteps;
     const Scenario& scenario = *plan.scenario;
     const bool is_instant = scenario.output.interval.kind == IntervalKind::instant;
     for (const Emitter& emitter : scenario.emitters) {
-      const bool moves = movesAt(emitter.platform);
+      OfEmitter of;
+      of.moves = movesAt(emitter.platform);
+      std::vector<double> active_s;  // the first two steps
+      for (std::size_t n = 0; n < times_s.size(); n += stride) {
+        of.is_active.push_back(isActiveAtStep(scenario, emitter, times_s[n]));
+        of.was_active.push_back(
+            n > 0 && (stride == 1 ? of.is_active[n - 1] : isActiveAtStep(scenario, emitter, times_s[n - 1])));
+        if (of.is_active.back() && active_s.size() < 2) active_s.push_back(times_s[n]);
+      }
       bool turns = emitter.scan.kind == scenario::ScanKind::victim && movesAt(emitter.scan.victim);
-      std::optional<emfield::IntervalBeam> beam;
-      bool is_same_sweep = true;
       if (is_instant) {
         turns = turns || scenario::scanCycle_s(emitter.scan) > 0;
       } else if (emitter.enabled) {
-        beam = beamOf(scenario, emitter, times_s.front());
-        is_same_sweep =
-            times_s.size() == 1 || beamOf(scenario, emitter, times_s[1]).of_sweep == beam->of_sweep;
-        turns = turns || !is_same_sweep;
+        of.beam = beamOf(scenario, emitter, active_s.empty() ? times_s.front() : active_s.front());
+        of.is_same_sweep =
+            active_s.size() < 2 || beamOf(scenario, emitter, active_s.back()).of_sweep == of.beam->of_sweep;
+        turns = turns || !of.is_same_sweep;
       }
-      const double switched = std::min(steps_, 1 + 2 * double(emitter.active_s.size()));
-      emitters_.push_back({moves, moves || turns, is_same_sweep, switched, std::move(beam)});
+      of.changes = of.moves || turns;
+      emitters_.push_back(std::move(of));
+    }
+    for (std::size_t c = 0; c < plan.channels.size(); ++c) {
+      std::vector<bool>& is_changed = channels_.emplace_back();
+      for (std::size_t n = 0; n < emitters_.front().is_active.size(); ++n)
+        is_changed.push_back(isChanged(c, n));
     }
   }
 
   const std::optional<emfield::IntervalBeam>& beam(std::size_t e) const { return emitters_[e].beam; }
   /// Intervals whose sweep is another than that of the one before; the first is one.
-  double ofSweep(std::size_t e) const { return emitters_[e].is_same_sweep ? 1 : steps_; }
-  /// Steps at which an emitter is elsewhere than at the step before; the first is one.
-  double ofPlace(std::size_t e) const { return emitters_[e].moves ? steps_ : 1; }
-  /// Steps at which the sum of a channel changes. Beams of radars that follow targets do not turn by
-  /// themselves.
+  double ofSweep(std::size_t e) const {
+    const OfEmitter& of = emitters_[e];
+    return countOf([&](std::size_t n) { return of.is_active[n] && !(of.is_same_sweep && of.was_active[n]); });
+  }
+  /// Steps at which an active emitter is elsewhere than when it was last active; the first is one.
+  double ofPlace(std::size_t e) const {
+    return emitters_[e].moves ? activeSteps(e) : std::min(1.0, activeSteps(e));
+  }
+  /// Steps at which the sum of a channel changes; the first is one.
   double ofChannel(std::size_t c) const {
-    const std::vector<int>& members = plan_.channels[c].emitters;
-    const std::vector<emfield::RadarTask>& radars = plan_.channel_plans[c].radars;
-    double changed = 1;
-    for (std::size_t n = 0; n < members.size(); ++n) {
-      const OfEmitter& emitter = emitters_[static_cast<std::size_t>(members[n])];
-      const bool follows = n < radars.size() && radars[n].look.kind != emfield::LookKind::held &&
-                           plan_.scenario->output.interval.kind == IntervalKind::instant;
-      changed =
-          std::max({changed, emitter.switched, (follows ? emitter.moves : emitter.changes) ? steps_ : 1});
-    }
-    for (const int j : plan_.channels[c].jammers) {
-      const OfEmitter& jammer = emitters_[static_cast<std::size_t>(j)];
-      changed = std::max({changed, jammer.switched, jammer.changes ? steps_ : 1});
-    }
-    return changed;
+    return countOf([&](std::size_t n) { return channels_[c][n]; });
+  }
+  /// Those of them at which an emitter is active, and a second one.
+  double ofMember(std::size_t c, std::size_t e, std::size_t other) const {
+    const OfEmitter &one = emitters_[e], &two = emitters_[other];
+    return countOf([&](std::size_t n) { return channels_[c][n] && one.is_active[n] && two.is_active[n]; });
   }
 
  private:
   struct OfEmitter {
     bool moves = false, changes = false, is_same_sweep = true;
-    double switched = 1;                        ///< steps at which it begins or ends, at most
+    std::vector<bool> is_active, was_active;    ///< at each step that is looked at, and at the one before it
     std::optional<emfield::IntervalBeam> beam;  ///< of the first interval; none: of an instant
   };
+
+  template <class Test>
+  double countOf(const Test& test) const {
+    const std::size_t seen = emitters_.front().is_active.size();
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < seen; ++n) count += test(n);
+    return double(count) * steps_ / double(seen);
+  }
+  double activeSteps(std::size_t e) const {
+    return countOf([&](std::size_t n) { return emitters_[e].is_active[n]; });
+  }
+  /// Beams of radars that follow targets do not turn by themselves.
+  bool isChanged(std::size_t c, std::size_t n) const {
+    if (n == 0) return true;
+    const std::vector<int>& members = plan_.channels[c].emitters;
+    const std::vector<emfield::RadarTask>& radars = plan_.channel_plans[c].radars;
+    const auto changes = [n](const OfEmitter& emitter, bool changes_alone) {
+      return emitter.is_active[n] != emitter.was_active[n] || (emitter.is_active[n] && changes_alone);
+    };
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      const OfEmitter& emitter = emitters_[static_cast<std::size_t>(members[m])];
+      const bool follows = m < radars.size() && radars[m].look.kind != emfield::LookKind::held &&
+                           plan_.scenario->output.interval.kind == IntervalKind::instant;
+      if (changes(emitter, follows ? emitter.moves : emitter.changes)) return true;
+    }
+    const std::vector<int>& jammers = plan_.channels[c].jammers;
+    return std::any_of(jammers.begin(), jammers.end(), [&](int j) {
+      const OfEmitter& jammer = emitters_[static_cast<std::size_t>(j)];
+      return changes(jammer, jammer.changes);
+    });
+  }
 
   bool movesAt(int platform) const {
     return platform >= 0 && plan_.scenario->platforms[static_cast<std::size_t>(platform)].track.size() > 1;
@@ -254,6 +301,7 @@ class ChangedSteps {
   const emfield::FieldPlan& plan_;
   double steps_;
   std::vector<OfEmitter> emitters_;
+  std::vector<std::vector<bool>> channels_;  ///< whether each changes at the steps that are looked at
 };
 
 }  // namespace
@@ -291,7 +339,13 @@ WorkTime workTimeOf(const Scenario& scenario, const scenario::Terrain* terrain,
       has_power |= plan.channel_plans[c].reducesPower();
       if (plan.channel_plans[c].occupancy_threshold_wm2 > 0)
         patterns_ns += kPatternEntry_ns * reachEntries(emitter, beam->of_sweep);
-      sums_ns += voxel_ns(plan, c, static_cast<int>(e), beam) * voxels * changed.ofChannel(c);
+      const double computed = changed.ofMember(c, e, e);
+      double jammers = 0;
+      for (std::size_t j = 0; j < scenario.emitters.size() && computed > 0; ++j) {
+        if (scenario.emitters[j].kind == scenario::EmitterKind::jammer)
+          jammers += changed.ofMember(c, e, j) / computed;
+      }
+      sums_ns += voxel_ns(plan, c, static_cast<int>(e), beam, jammers) * voxels * computed;
     }
     if (beam && has_power && !emfield::stays(beam->of_sweep)) {
       patterns_ns += kPatternEntry_ns *

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -59,6 +60,20 @@ bool looksLikeN(const RefractivityProfile& profile) {
   return top_m - profile.levels.front().height_msl_m > 1000 && profile.at(top_m) < profile.at(top_m - 500);
 }
 
+/// Told of a profile whose N at its top is none of the air's at that height, within a third of the reference
+/// atmosphere of ITU-R P.453 (315 exp(-h / 7.35 km)), which holds dry and tropical air; empty: it is one.
+std::string strangeTopText(const RefractivityProfile& profile) {
+  constexpr double kLowest_m = 300, kHighest_m = 10000, kLow = 0.65, kHigh = 1.35;
+  const double top_m = std::min(profile.levels.back().height_msl_m, kHighest_m);
+  if (top_m - profile.levels.front().height_msl_m < kLowest_m) return "";
+  const double n_units = profile.at(top_m) - kFlatteningGradient_m * top_m;
+  const double usual_n_units = 315 * std::exp(-top_m / 7350);
+  if (n_units >= kLow * usual_n_units && n_units <= kHigh * usual_n_units) return "";
+  return fmt::format(
+      "its air has {:.0f} N-units at {:.0f} m, usual are about {:.0f}: are the heights in feet?", n_units,
+      top_m, usual_n_units);
+}
+
 class CsvProfiles {
  public:
   explicit CsvProfiles(const std::string& file)
@@ -86,9 +101,13 @@ class CsvProfiles {
                          : has(range) ? fmt::format("{} profiles by range", count)
                                       : fmt::format("{} profiles by place", count);
     result.description += thinning;
+    if (std::string unended = reader_.unendedWarning(file_, "a level"); !unended.empty())
+      result.warnings.push_back(std::move(unended));
     if (has(m) && std::any_of(field.profiles.begin(), field.profiles.end(), looksLikeN)) {
       result.warnings.push_back(fmt::format(
           "{}: m_units falls with height at the top: these look like N-units (column n_units)", file_));
+    } else if (const std::string strange = strangeTopText(field.profiles.front()); !strange.empty()) {
+      result.warnings.push_back(fmt::format("{}: {}", file_, strange));
     }
     if (has(humidity) && highest_humidity_ > 0 && highest_humidity_ <= kLikelyFraction) {
       result.warnings.push_back(

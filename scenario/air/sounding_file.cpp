@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/files/file_reading.h"
+#include "base/text/unended_line.h"
 #include "document/csv.h"
 #include "document/text_lines.h"
 #include "emscape/base/error.h"
@@ -107,13 +108,9 @@ std::string cutOf(const std::string& text) {
   if (raw != std::string::npos && text.find("%END%", raw) == std::string::npos)
     return "its last sounding has no %END%: the file was cut there, and levels may be missing or wrong";
   const std::vector<std::string_view> lines = soundingLines(text);
-  if (text.empty() || text.back() == '\n' || text.back() == '\r') return "";
-  const std::string_view last = document::withoutBlanks(lines.back());
+  const std::string_view last = lines.empty() ? "" : document::withoutBlanks(lines.back());
   if (last.empty() || last.find_first_of("0123456789-") != 0) return "";
-  return fmt::format(
-      "line {}, a level, has no end: if the file was cut there, its values are wrong; remove it, or "
-      "end the line",
-      lines.size());
+  return unendedLineTextOf(text, "a level");
 }
 
 class Sounding {

@@ -90,6 +90,8 @@ std::vector<GridRow> readRows(const TextLines& text, const std::vector<ColumnSpe
     }
     rows.push_back(row);
   }
+  if (const std::string unended = reader.unendedWarning(text.file(), "a row"); !unended.empty())
+    logWarning(unended);
   return rows;
 }
 

@@ -122,7 +122,10 @@ class PatternTable {
       line_ = row.line;
       readRow(row.cells);
     }
-    return made();
+    PatternFile pattern = made();
+    if (std::string unended = reader.unendedWarning(text_.file(), "a row"); !unended.empty())
+      pattern.warnings.push_back(std::move(unended));
+    return pattern;
   }
 
  private:

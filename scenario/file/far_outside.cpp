@@ -7,6 +7,7 @@
 
 #include "base/geodesy/position_mistakes.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/work.h"
 
 namespace emscape::scenario {
 namespace {
@@ -26,6 +27,7 @@ std::string farOutsideText(const Region& region, const std::vector<GeodeticPosit
   double nearest_m = HUGE_VAL;
   const GeodeticPosition* nearest = nullptr;
   for (const GeodeticPosition& position : positions) {
+    checkpoint();
     const double distance_m = outside_m(region, position.latitude_deg, position.longitude_deg);
     if (distance_m >= nearest_m) continue;
     nearest_m = distance_m;

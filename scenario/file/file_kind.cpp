@@ -66,10 +66,16 @@ std::string foreignFileText(const std::string& file) {
 
 DocumentKind documentKindOf(const document::DocumentNode& root) {
   if (root.kind != document::NodeKind::map) return DocumentKind::unknown;
-  return kindByKeys([&](const char* key) {
-    return std::any_of(root.entries.begin(), root.entries.end(),
-                       [&](const document::MapEntry& entry) { return entry.key == key; });
-  });
+  const auto valueOf = [](const document::DocumentNode& node, const char* key) {
+    const auto found = std::find_if(node.entries.begin(), node.entries.end(),
+                                    [&](const document::MapEntry& entry) { return entry.key == key; });
+    return found == node.entries.end() ? nullptr : found->value.get();
+  };
+  const DocumentKind kind = kindByKeys([&](const char* key) { return valueOf(root, key) != nullptr; });
+  const document::DocumentNode* const rows = valueOf(root, "emitters");
+  const bool has_match =
+      rows != nullptr && !rows->items.empty() && valueOf(*rows->items[0], "match") != nullptr;
+  return kind == DocumentKind::unknown && has_match ? DocumentKind::emitters : kind;
 }
 
 DocumentKind documentKindOf(const nlohmann::json& root) {
@@ -91,6 +97,8 @@ std::string otherDocumentText(DocumentKind kind, DocumentKind wanted) {
       return "a transfer function" + is_not + ": `render` and `view` read it with --transfer";
     case DocumentKind::series:
       return "describes a series of volumes" + is_not + ": open its folder";
+    case DocumentKind::emitters:
+      return "an emitter database" + is_not + ": `emscape import` reads it with --emitters";
     case DocumentKind::vectors:
       return "GeoJSON" + is_not;
     default:

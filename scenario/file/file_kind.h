@@ -12,10 +12,10 @@ namespace emscape::scenario {
 /// a recording: `emscape import` makes a scenario of it"; empty: it may be a document.
 std::string foreignFileText(const std::string& file);
 
-enum class DocumentKind { scenario, study, view, transfer, series, vectors, result, unknown };
-/// By the keys of a document.
+enum class DocumentKind { scenario, study, view, transfer, series, vectors, result, unknown, emitters };
+/// By the keys of a document; the emitter database by those of its first row.
 DocumentKind documentKindOf(const document::DocumentNode& root);
-/// The same of JSON.
+/// The same of JSON, by its keys alone.
 DocumentKind documentKindOf(const nlohmann::json& root);
 
 /// "a study, not a scenario: `emscape study` computes it"; empty: it is one, or not recognised.

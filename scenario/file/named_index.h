@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
-#include "scenario/file/named_items.h"
+#include "scenario/model/named_items.h"
 
 namespace emscape::scenario {
 

@@ -6,9 +6,9 @@
 
 #include "document/edit_path.h"
 #include "document/text_edit.h"
-#include "scenario/file/named_items.h"
 #include "scenario/file/schema.h"
 #include "scenario/file/source.h"
+#include "scenario/model/named_items.h"
 
 namespace emscape::scenario {
 namespace {

@@ -18,7 +18,7 @@ struct Key {
   bool is_expert = false;
 };
 
-constexpr std::array<Key, 66> kKeys{{
+constexpr std::array<Key, 67> kKeys{{
     {"beamwidth_az_deg", "beamwidth, azimuth"},
     {"beamwidth_el_deg", "beamwidth, elevation"},
     {"side_lobe_db", "side lobes"},
@@ -60,6 +60,7 @@ constexpr std::array<Key, 66> kKeys{{
     {"height_agl_m", "height above ground"},
     {"height_ellipsoid_m", "height above ellipsoid"},
     {"points", "track points"},
+    {"sidc", "symbol code (SIDC)"},
     {"center_frequency_hz", "centre frequency"},
     {"required_sinr_db", "required SINR"},
     {"rcs_m2", "radar cross section"},

@@ -132,6 +132,12 @@ class GroupBuilder {
                       const std::string& variant) {
     if (!spec.discriminator.empty() && variant.empty()) return row.name == spec.discriminator;
     if (!row.only_for.empty() && !isIn(row.only_for, variant)) return false;
+    // A default of an absent object that has no defaults for all of its keys.
+    const bool has_default = !std::holds_alternative<std::monostate>(row.default_value);
+    const auto isRequired = [](const KeySpec& key) { return key.required; };
+    if (node == nullptr && has_default && spec.discriminator.empty() &&
+        std::any_of(spec.keys.begin(), spec.keys.end(), isRequired))
+      return false;
     const bool is_given = childOf(node, row.name) != nullptr;
     for (const auto& group : spec.exactly_one_of) {
       if (isIn(group, row.name) && !is_given) return false;

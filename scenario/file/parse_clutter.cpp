@@ -78,6 +78,8 @@ std::optional<Clutter> parseClutter(const Section& section, const Emitter& radar
     clutter.mti = parseMti(section.section("mti"), context);
     warnOfPerfectFilter(section.section("mti"), clutter, radar, context);
   }
+  if (section.has("independent_samples"))
+    clutter.independent_samples = section.integer("independent_samples");
   clutter.target_radial_speed_mps = section.optionalNumber("target_radial_speed_m_s");
   if (clutter.target_radial_speed_mps && !clutter.mti) {
     context.problems.addWarning(section.locationOf("target_radial_speed_m_s"),

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/files/file_reading.h"
+#include "base/text/unended_line.h"
 #include "scenario/file/parse_sections.h"
 #include "scenario/terrain/file_names.h"
 
@@ -105,7 +106,10 @@ LandCoverSpec parseLandCover(const Section& section, bool known, std::string& di
   cover.table = context.resolve(section.text("table"));
   try {
     readCoverTable(cover.table);
-    digest += readWholeText(cover.table);
+    const std::string table = readWholeText(cover.table);
+    digest += table;
+    if (const std::string unended = unendedLineWarning(cover.table, table, "a row"); !unended.empty())
+      context.problems.addWarning(section.locationOf("table"), unended);
   } catch (const Error& error) {
     context.problems.addError(error.location().file.empty() ? section.locationOf("table") : error.location(),
                               error.message());
@@ -181,7 +185,7 @@ propagation::Atmosphere parseAtmosphere(const Section& section, ParseContext& co
   return atmosphere;
 }
 
-propagation::Ground parseGround(const Section& section) {
+propagation::Ground parseGround(const Section& section, ParseContext& context) {
   propagation::Ground ground;
   ground.kind = section.choice<propagation::GroundKind>("kind");
   ground.relative_permittivity = section.optionalNumber("relative_permittivity");
@@ -192,7 +196,11 @@ propagation::Ground parseGround(const Section& section) {
   ground.terminal_clutter = section.choice<propagation::TerminalClutterModel>("terminal_clutter");
   ground.terminal_clutter_percent = section.number("terminal_clutter_percent");
   ground.terminal_clutter_below_m = section.number("terminal_clutter_below_m");
-  ground.terminal_clutter_ends = section.choice<propagation::ClutterEnds>("terminal_clutter_ends");
+  if (section.text("terminal_clutter_ends") == "receiver")
+    context.problems.addWarning(section.locationOf("terminal_clutter_ends"),
+                                "'receiver' is not used any more: an antenna up to "
+                                "'terminal_clutter_below_m' is within the clutter, whether it transmits or "
+                                "receives");
   ground.terminal_clutter_combine =
       section.choice<propagation::ClutterCombination>("terminal_clutter_combine");
   ground.location = section.location();

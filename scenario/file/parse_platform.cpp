@@ -73,7 +73,7 @@ std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
     if (!recording && isRecordedTrack(bytes, choice))
       recording = std::make_shared<const interop::Recording>(interop::readRecordingIn(bytes, file, options));
     read = recording ? recordedTrack(*recording, choice, parseUtc_ms(context.epoch_utc))
-                     : TrackFile{parseTrack(file, bytes, track.locationOf("file"), context.problems), {}};
+                     : parseTrack(file, bytes, track.locationOf("file"), context.problems);
   } catch (const Error& error) {
     const SourceLocation location =
         error.location().file.empty() ? SourceLocation{file, 0, 0} : error.location();

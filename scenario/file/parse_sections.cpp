@@ -125,10 +125,35 @@ RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
   receiver.binary_threshold = section.integer("binary_threshold");
   receiver.required_signal_to_jammer_db = section.optionalNumber("required_signal_to_jammer_db");
   receiver.target_rcs_m2 = section.number("target_rcs_m2");
+  if (section.has("side_lobe_blanking")) {
+    const Section blanking = section.section("side_lobe_blanking");
+    receiver.side_lobe_blanking =
+        SideLobeBlanking{blanking.number("auxiliary_gain_dbi"), blanking.number("threshold_db")};
+  }
   return receiver;
 }
 
-std::optional<Waveform> parseWaveform(const Section& section, ParseContext& context) {
+/// An auxiliary channel that is stronger than the main beam would blank the radar's own echoes.
+void checkBlanking(const Emitter& radar, const Section& receiver, ParseContext& context) {
+  const auto& blanking = radar.receiver.side_lobe_blanking;
+  if (!blanking || !radar.antenna) return;
+  const double highest_dbi = radar.antenna->gain_dbi + blanking->threshold_db;
+  if (blanking->auxiliary_gain_dbi < highest_dbi) return;
+  context.problems.addError(
+      receiver.section("side_lobe_blanking").locationOf("auxiliary_gain_dbi"),
+      fmt::format("'auxiliary_gain_dbi' is {:g} dBi: with 'threshold_db' {:g} dB it must be below {:g} dBi, "
+                  "or what the "
+                  "main beam of '{}' receives would be blanked",
+                  blanking->auxiliary_gain_dbi, blanking->threshold_db, highest_dbi, radar.name));
+}
+
+/// @param is_radar  else of a jammer, whose pulses have no ranges
+std::optional<Waveform> parseWaveform(const Section& section, bool is_radar, ParseContext& context) {
+  for (const char* key : {"instrumented_range_m", "limits_detection"}) {
+    if (is_radar || !section.has(key)) continue;
+    context.problems.addError(section.locationOf(key),
+                              fmt::format("'{}' is of the waveform of radars, not of jammers", key));
+  }
   const Waveform waveform{section.number("prf_hz"), section.number("pulse_width_s"),
                           section.optionalNumber("instrumented_range_m"),
                           section.optionalBoolean("limits_detection").value_or(true)};
@@ -390,7 +415,9 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
         fmt::format("'kind' is track, which turns a radar onto its targets; '{}' is a {}: its beam stays",
                     emitter.name, toString(emitter.kind)));
   }
-  if (section.has("waveform")) emitter.waveform = parseWaveform(section.section("waveform"), context);
+  if (section.has("waveform"))
+    emitter.waveform =
+        parseWaveform(section.section("waveform"), emitter.kind == EmitterKind::radar, context);
   if (section.has("clutter")) emitter.clutter = parseClutter(section.section("clutter"), emitter, context);
   if (section.has("receiver")) {
     const Section receiver = section.section("receiver");
@@ -398,6 +425,7 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
     parseAntennaNoise(receiver, emitter.frequency_hz, emitter.antenna, emitter.scan, context,
                       emitter.receiver.antenna_temperature_k);
     matchPulses(emitter, receiver, context);
+    checkBlanking(emitter, receiver, context);
   }
   emitter.active_s = parseActive(section, context);
   return emitter;

@@ -42,6 +42,7 @@ struct ParseContext {
   /// Recordings of other programs that were read, by resolved name and choices.
   std::map<std::string, std::shared_ptr<const interop::Recording>> recordings;
   std::set<std::string> told_of_tracks;  ///< warnings: a file may have the tracks of many platforms
+  bool checks_terrain = false;           ///< also of a scenario with errors: parseScenarioToCheck()
 
   /// Path of a file named in the scenario; relative names are relative to the scenario's folder.
   std::string resolve(const std::string& name) const;
@@ -55,7 +56,7 @@ struct ParseContext {
 Region parseRegion(const Section& section, ParseContext& context);
 TerrainSpec parseTerrain(const Section& section, ParseContext& context);
 propagation::Atmosphere parseAtmosphere(const Section& section, ParseContext& context);
-propagation::Ground parseGround(const Section& section);
+propagation::Ground parseGround(const Section& section, ParseContext& context);
 Platform parsePlatform(const Section& section, ParseContext& context);
 AntennaPtr parseAntenna(const Section& section, ParseContext& context);  ///< null if faulty
 ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context);
@@ -108,7 +109,7 @@ Target parseTarget(const Section& section, const std::vector<Platform>& platform
 /// Rows of a track file (CSV: a header line, then rows; empty lines and lines that begin with # are skipped).
 /// Every fault is reported with its line and column, at most 50 per file.
 /// @param named_at  location of the file's name in the scenario
-std::vector<TrackPoint> parseTrack(const std::string& file, const std::string& bytes,
-                                   const SourceLocation& named_at, ProblemList& problems);
+TrackFile parseTrack(const std::string& file, const std::string& bytes, const SourceLocation& named_at,
+                     ProblemList& problems);
 
 }  // namespace emscape::scenario

@@ -4,6 +4,7 @@
 
 #include "document/csv.h"
 #include "document/schema_check.h"
+#include "emscape/base/work.h"
 #include "recording/common/text.h"
 #include "scenario/file/parse_sections.h"
 
@@ -22,7 +23,7 @@ class TrackReader {
   TrackReader(const std::string& file, const SourceLocation& named_at, ProblemList& problems)
       : file_(file), named_at_(named_at), problems_(problems) {}
 
-  std::vector<TrackPoint> read(const std::string& text) {
+  TrackFile read(const std::string& text) {
     if (isOfAnotherProgram(text)) return {};
     CsvReader reader(text);
     for (CsvRow row; faults_ <= kMaxFaults && reader.next(row);) {
@@ -40,7 +41,11 @@ class TrackReader {
             fmt::format("the track has {} row{}; it needs at least 2", points_.size(),
                         points_.size() == 1 ? "" : "s"));
     }
-    return std::move(points_);
+    TrackFile track;
+    track.points = std::move(points_);
+    if (std::string unended = reader.unendedText("a row"); !unended.empty())
+      track.warnings.push_back(std::move(unended));
+    return track;
   }
 
  private:
@@ -117,6 +122,7 @@ class TrackReader {
   }
 
   void readRow(const std::vector<CsvCell>& cells, int line) {
+    checkpoint();
     if (cells.size() != columns_.size()) {
       fault(line, cells[std::min(cells.size(), columns_.size() + 1) - 1].column,
             fmt::format("{} values, but the header names {} columns", cells.size(), columns_.size()));
@@ -170,8 +176,9 @@ class TrackReader {
 
 }  // namespace
 
-std::vector<TrackPoint> parseTrack(const std::string& file, const std::string& bytes,
-                                   const SourceLocation& named_at, ProblemList& problems) {
+TrackFile parseTrack(const std::string& file, const std::string& bytes, const SourceLocation& named_at,
+                     ProblemList& problems) {
+  const WorkPart part("reading " + file, 0, 0);
   try {
     return TrackReader(file, named_at, problems).read(document::checkedUtf8(file, bytes, "a track"));
   } catch (const Error& error) {

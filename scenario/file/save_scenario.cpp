@@ -114,7 +114,8 @@ std::string scenarioTextIn(const Scenario& scenario, const fs::path& folder) {
 
 void saveScenario(const Scenario& scenario, const std::string& file) {
   const std::string text = scenarioTextIn(scenario, fs::absolute(file).parent_path());
-  writeWhole(file, [&text](std::ostream& stream) { stream << text; });
+  writeWhole(
+      file, [&text](std::ostream& stream) { stream << text; }, Replaces::any);
 }
 
 void saveWithFiles(const Scenario& scenario, const std::string& file) {
@@ -134,13 +135,14 @@ void saveWithFiles(const Scenario& scenario, const std::string& file) {
   for (const auto& [name, text] : text_of_name) {
     if (!fs::exists(folder / name))
       writeWhole(
-          folder / name, [&text = text](std::ostream& stream) { stream << text; }, false);
+          folder / name, [&text = text](std::ostream& stream) { stream << text; }, Replaces::nothing);
   }
   const std::string text = textWith(source, [&](const std::string& name) {
     return isOwn(name) ? (folder.filename() / fs::path(name).filename()).generic_string()
                        : renamed(name, from, to.parent_path());
   });
-  writeWhole(file, [&text](std::ostream& stream) { stream << text; });
+  writeWhole(
+      file, [&text](std::ostream& stream) { stream << text; }, Replaces::any);
 }
 
 }  // namespace emscape::scenario

@@ -16,7 +16,9 @@
 #include "scenario/file/file_kind.h"
 #include "scenario/file/parse_sections.h"
 #include "scenario/file/quantity_needs.h"
+#include "scenario/file/scenario_check.h"
 #include "scenario/file/scenario_warnings.h"
+#include "scenario/terrain/terrain_faults.h"
 
 namespace emscape::scenario {
 
@@ -137,7 +139,7 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
   context.origin = scenario.region.origin;
   if (root.has("terrain")) scenario.terrain = parseTerrain(root.section("terrain"), context);
   scenario.atmosphere = context.atmosphere = parseAtmosphere(root.section("atmosphere"), context);
-  scenario.ground = parseGround(root.section("ground"));
+  scenario.ground = parseGround(root.section("ground"), context);
   for (const Section& item : root.sections("platforms"))
     scenario.platforms.push_back(parsePlatform(item, context));
   for (const Section& item : root.sections("emitters")) {
@@ -192,8 +194,13 @@ ParseResult readSource(ScenarioSource source, const NamedFiles* before, ParseCon
   ParseResult result;
   result.problems = context.problems.inOrder();
   for (Problem& problem : result.problems) problem.location = source.text.originOf(problem.location);
-  if (!scenario || context.problems.hasErrors()) return result;
+  if (!scenario) return result;
   mapPlaces(*scenario, source.text);
+  if (context.problems.hasErrors()) {
+    scenario->platforms.clear();  // whose places may be wrong
+    if (context.checks_terrain) addTerrainFaults(*scenario, result.problems);
+    return result;
+  }
   for (const Problem& problem : result.problems)
     source.warnings.push_back(toString(problem.location) + ": " + problem.message);
   source.files = std::move(context.files);
@@ -216,12 +223,7 @@ void applyEdits(ScenarioSource& source, const std::vector<Edit>& edits, ParseCon
 /// @throws Error (bad_input) that lists the errors of a result without a scenario
 void requireScenario(const ParseResult& result) {
   if (result.scenario) return;
-  std::string all;
-  for (const Problem& problem : result.problems) {
-    if (problem.severity == Severity::warning) continue;
-    all += (all.empty() ? "" : "\n") + toString(problem.location) + ": " + problem.message;
-  }
-  throw Error(ErrorCode::bad_input, all);
+  throw Error(ErrorCode::bad_input, document::errorsText(result.problems));
 }
 
 /// @throws Error (bad_input) if there is no text
@@ -237,10 +239,11 @@ ParseContext contextOfEdits(const Scenario& scenario) {
 
 /// @param readBytes  returns the text; its errors are problems of the result
 ParseResult parsed(const std::string& file, const std::function<std::string()>& readBytes,
-                   const std::vector<Edit>& edits, ReadFor read_for) {
+                   const std::vector<Edit>& edits, ReadFor read_for, bool checks_terrain = false) {
   ParseContext context;
   context.file = file;
   context.read_for = read_for;
+  context.checks_terrain = checks_terrain;
   ScenarioSource source;
   try {
     source.text = {file, document::checkedUtf8(file, readBytes(), "a scenario")};
@@ -258,15 +261,40 @@ ParseResult parsed(const std::string& file, const std::function<std::string()>& 
 
 }  // namespace
 
+namespace {
+
+std::string scenarioBytes(const std::string& file) {
+  if (const std::string other = foreignFileText(file); !other.empty())
+    throw Error(ErrorCode::bad_input, {file, 0, 0}, other);
+  return readWholeText(file, kMaxScenarioBytes);
+}
+
+}  // namespace
+
 ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits, ReadFor read_for) {
   return parsed(
-      file,
-      [&] {
-        if (const std::string other = foreignFileText(file); !other.empty())
-          throw Error(ErrorCode::bad_input, {file, 0, 0}, other);
-        return readWholeText(file, kMaxScenarioBytes);
-      },
-      edits, read_for);
+      file, [&] { return scenarioBytes(file); }, edits, read_for);
+}
+
+ParseResult parseScenarioToCheck(const std::string& file, const std::vector<Edit>& edits) {
+  return parsed(
+      file, [&] { return scenarioBytes(file); }, edits, ReadFor::series, true);
+}
+
+bool addTerrainFaults(const Scenario& scenario, std::vector<Problem>& problems) {
+  if (!scenario.terrain || scenario.region.dims.x == 0) return false;  // a wrong region has no box
+  bool has_fault = false;
+  for (const Error& error : faultsOfFiles(*scenario.terrain, terrainBox(scenario))) {
+    const SourceLocation location =
+        error.location().file.empty() ? SourceLocation{scenario.file, 0, 0} : error.location();
+    const bool is_known = std::any_of(problems.begin(), problems.end(), [&](const Problem& other) {
+      return other.severity == Severity::error && toString(other.location) == toString(location);
+    });
+    if (is_known) continue;
+    problems.push_back({location, Severity::error, error.message()});
+    has_fault = true;
+  }
+  return has_fault;
 }
 
 ParseResult parseScenarioText(const std::string& file, const std::string& text,

@@ -7,6 +7,7 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "emscape/scenario/model/quantities.h"
 #include "recording/common/ticks.h"
 #include "recording/common/track_recorder.h"
@@ -14,6 +15,7 @@
 #include "scenario/file/radar_warnings.h"
 #include "scenario/file/warning_of_items.h"
 #include "scenario/scan/scan_sampling.h"
+#include "scenario/scan/scan_sweep.h"
 
 namespace emscape::scenario {
 namespace {
@@ -34,6 +36,26 @@ void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, Pa
   warning.addTo(context.problems);
 }
 
+/// Tells of jammers in the band of a radar on their own platform, which do not jam it.
+void tellOfOwnJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Emitter& jammer = scenario.emitters[i];
+    if (jammer.kind != EmitterKind::jammer || !jammer.enabled) continue;
+    const auto radar =
+        std::find_if(scenario.emitters.begin(), scenario.emitters.end(), [&](const Emitter& other) {
+          return other.enabled && other.platform == jammer.platform && isInBandOf(other, jammer);
+        });
+    if (radar == scenario.emitters.end()) continue;
+    warning.add(sections[i].locationOf("platform"), jammer.name,
+                fmt::format("jammer '{}' is on the platform of radar '{}', in its band, and left out there: "
+                            "coupling between antennas of one platform is not modelled",
+                            jammer.name, radar->name));
+  }
+  warning.addTo(context.problems);
+}
+
 /// Warns about jammers outside the bands of all radars, if the output depends on jamming.
 void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<std::string>& quantities = scenario.output.quantities;
@@ -45,12 +67,8 @@ void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseConte
   for (std::size_t i = 0; i < sections.size() && counts; ++i) {
     const Emitter& jammer = scenario.emitters[i];
     if (jammer.kind != EmitterKind::jammer || !jammer.enabled) continue;
-    const bool jams =
-        std::any_of(scenario.emitters.begin(), scenario.emitters.end(), [&jammer](const Emitter& radar) {
-          return radar.kind == EmitterKind::radar &&
-                 std::abs(radar.frequency_hz - jammer.frequency_hz) <=
-                     (radar.receiver.bandwidth_hz + jammer.bandwidth_hz) / 2;
-        });
+    const bool jams = std::any_of(scenario.emitters.begin(), scenario.emitters.end(),
+                                  [&jammer](const Emitter& radar) { return isInBandOf(radar, jammer); });
     if (jams) continue;
     warning.add(
         sections[i].locationOf("frequency_hz"), jammer.name,
@@ -206,6 +224,112 @@ void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseConte
   context.problems.addWarning(scan.locationOf(rotates ? "rate_rpm" : "rate_deg_s"), unlit->warning);
 }
 
+/// Warns about beams that pass between the voxels.
+void warnOfNarrowBeams(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Emitter& emitter = scenario.emitters[i];
+    const std::optional<NarrowBeam> beam = narrowBeam(scenario, emitter);
+    if (!beam) continue;
+    const Section antenna = sections[i].section("antenna");
+    const char* const key = beam->in_azimuth ? "beamwidth_az_deg" : "beamwidth_el_deg";
+    warning.add(antenna.has(key) ? antenna.locationOf(key) : antenna.location(), emitter.name,
+                narrowBeamText(scenario, emitter, *beam));
+  }
+  warning.addTo(context.problems);
+}
+
+/// Warns about emitters that switch on and off between the steps, of instants.
+void warnOfMissedActivity(const Scenario& scenario, const Section& root, ParseContext& context) {
+  constexpr double kMaxTimes = 20000;
+  const Clock& clock = scenario.clock;
+  if (scenario.output.interval.kind != IntervalKind::instant || !(clock.duration_s > 0)) return;
+  const std::string text = missedActivityText(
+      scenario, timesOf(0, std::min(clock.duration_s, kMaxTimes * clock.step_s), clock.step_s));
+  if (!text.empty()) context.problems.addWarning(root.locationOf("step_s"), text);
+}
+
+/// Whether values of the output depend on what emitters do in the course of its interval.
+bool isOverJamming(const OutputSpec& output) {
+  return output.interval.kind != IntervalKind::instant &&
+         std::any_of(output.quantities.begin(), output.quantities.end(),
+                     [](const std::string& name) { return needsJammer(quantityFromName(name)); });
+}
+
+/// Warns about jammers whose beam turns during an interval, in which it is that of its begin, and about
+/// several radars whose largest values are added.
+void warnOfJammingOverIntervals(const Scenario& scenario, const Section& root, ParseContext& context) {
+  if (!isOverJamming(scenario.output)) return;
+  const std::vector<Section> sections = root.sections("emitters");
+  const bool adds_largest =
+      scenario.output.interval.kind == IntervalKind::max_hold &&
+      scenario.output.combine == CombineMode::sum &&
+      std::count_if(scenario.emitters.begin(), scenario.emitters.end(), [](const Emitter& emitter) {
+        return emitter.kind == EmitterKind::radar && emitter.enabled;
+      }) > 1;
+  WarningOfItems of_beams, of_sums;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Emitter& jammer = scenario.emitters[i];
+    if (jammer.kind != EmitterKind::jammer || !jammer.enabled) continue;
+    const bool is_directive = jammer.antenna->view().kind != PatternKind::isotropic;
+    if (is_directive && scanCycle_s(jammer.scan) > 0) {
+      of_beams.add(sections[i].section("scan").location(), jammer.name,
+                   fmt::format("the beam of jammer '{}' moves, but all looks of a radar in an interval meet "
+                               "it where it is at the volume's time: 'interval: {{kind: instant}}' and "
+                               "smaller steps follow it",
+                               jammer.name));
+    }
+    if (adds_largest && !jammer.active_s.empty()) {
+      of_sums.add(sections[i].location(), jammer.name,
+                  fmt::format("jammer '{}' is not always active, but jams all looks of an interval of kind "
+                              "max_hold for several radars together ('combine: sum'); 'combine: max' or "
+                              "per_emitter takes each look by itself",
+                              jammer.name));
+    }
+  }
+  of_beams.addTo(context.problems);
+  of_sums.addTo(context.problems);
+}
+
+/// Warns about platforms of emitters that leave their voxel during an interval, in which they are where they
+/// are at its begin.
+void warnOfMotionInIntervals(const Scenario& scenario, const Section& root, ParseContext& context) {
+  if (scenario.output.interval.kind == IntervalKind::instant) return;
+  constexpr double kSamples = 200;
+  const std::vector<Section> sections = root.sections("platforms");
+  const Dims& dims = scenario.region.dims;
+  const double voxel_m = std::max(scenario.region.size_m.x / dims.x, scenario.region.size_m.y / dims.y);
+  WarningOfItems warning;
+  for (std::size_t p = 0; p < sections.size(); ++p) {
+    const Platform& platform = scenario.platforms[p];
+    double interval_s = 0;
+    for (const Emitter& emitter : scenario.emitters) {
+      if (emitter.enabled && emitter.platform == static_cast<int>(p))
+        interval_s =
+            std::max(interval_s, intervalDuration_s(scenario.output.interval, emitter.scan, scenario.clock));
+    }
+    if (!platform.moves() || interval_s == 0) continue;
+    double farthest_m = 0;
+    const double step_s = std::max(scenario.clock.step_s, scenario.clock.duration_s / kSamples);
+    for (double t_s = 0; t_s <= scenario.clock.duration_s; t_s += step_s) {
+      const SitePosition from = pointAt(platform, t_s).position,
+                         to = pointAt(platform, t_s + interval_s).position;
+      farthest_m = std::max(farthest_m, geodesicInverse(from.latitude_deg, from.longitude_deg,
+                                                        to.latitude_deg, to.longitude_deg)
+                                            .distance_m);
+    }
+    if (!(farthest_m > voxel_m)) continue;
+    warning.add(
+        sections[p].location(), platform.name,
+        fmt::format("platform '{}' moves up to {:.4g} m in an interval of {:g} s, but its emitters are "
+                    "where they are at the volume's time, as all platforms: an interval of {:.2g} s "
+                    "keeps it within a voxel ({:.4g} m)",
+                    platform.name, farthest_m, interval_s, interval_s * voxel_m / farthest_m, voxel_m));
+  }
+  warning.addTo(context.problems);
+}
+
 /// Warns about platforms that are never near the region, with the mistake that may be the cause.
 void warnOfPlatformsFarOutside(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<Section> sections = root.sections("platforms");
@@ -232,6 +356,7 @@ constexpr double kShortestStep_s = 1e-3;
 
 /// The leg to a point of a track.
 TrackLeg legTo(const std::vector<TrackPoint>& track, std::size_t k) {
+  checkpoint();
   const SitePosition &from = track[k - 1].position, &to = track[k].position;
   return {
       geodesicInverse(from.latitude_deg, from.longitude_deg, to.latitude_deg, to.longitude_deg).distance_m,
@@ -265,6 +390,7 @@ void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseC
   const GeoFrame frame(scenario.region.origin);
   const Vec3d half = scenario.region.size_m * 0.5;
   const auto distance_m = [&](const TrackPoint& point) {
+    checkpoint();
     const Vec3d at = frame.toLocal({point.position.latitude_deg, point.position.longitude_deg, 0});
     return std::hypot(std::max(std::abs(at.x) - half.x, 0.0), std::max(std::abs(at.y) - half.y, 0.0));
   };
@@ -282,8 +408,7 @@ void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseC
     warning.add(
         sections[i].locationOf("platform"), emitter.name,
         fmt::format(
-            "emitter '{}' is outside the region, {} from it: its field in the region is computed, but "
-            "pictures and maps do not show where it is",
+            "emitter '{}' is outside the region, {} from it: maps of the region do not show where it is",
             emitter.name,
             nearest_m < 1000 ? fmt::format("{:.0f} m", nearest_m)
                              : fmt::format("{:.1f} km", nearest_m / 1000)));
@@ -442,6 +567,9 @@ void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseCon
   tellOfDisabledEmitters(scenario, root, context);
   warnOfEmittersWithoutBand(scenario, root, context);
   warnOfIdleJammers(scenario, root, context);
+  tellOfOwnJammers(scenario, root, context);
+  warnOfJammingOverIntervals(scenario, root, context);
+  warnOfMotionInIntervals(scenario, root, context);
   warnOfGains(scenario, root, context);
   warnOfAntennaFrequencies(scenario, root, context);
   addRadarWarnings(scenario, root, context);
@@ -452,7 +580,11 @@ void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseCon
   warnOfSpeeds(scenario, root, context);
   warnOfEmittersOutside(scenario, root, context);
   warnOfKilometres(scenario, root, context);
-  if (context.read_for == ReadFor::series) warnOfCoarseSteps(scenario, root, context);
+  if (context.read_for == ReadFor::series) {
+    warnOfCoarseSteps(scenario, root, context);
+    warnOfNarrowBeams(scenario, root, context);
+    warnOfMissedActivity(scenario, root, context);
+  }
 }
 
 }  // namespace emscape::scenario

@@ -123,7 +123,8 @@ std::optional<double> degreesOfText(std::string_view text, bool is_latitude) {
 
 class PointReader {
  public:
-  PointReader(const std::string& file, const PointColumns& columns) : file_(file), columns_(columns) {}
+  PointReader(const std::string& file, char separator, const PointColumns& columns)
+      : file_(file), separator_(separator), columns_(columns) {}
 
   NamedPoint read(const CsvRow& row) {
     row_ = &row;
@@ -143,7 +144,11 @@ class PointReader {
   }
 
   /// After all rows. @throws Error (bad_input)
-  void requireOneDecimalSign() const { decimal_signs_.require(); }
+  void requireOneDecimalSign() const {
+    decimal_signs_.require();
+    if (separator_ == ',') decimal_signs_.requireOneComma();
+    decimal_signs_.requireClearComma();
+  }
 
   [[noreturn]] void fail(int column, const std::string& message) const {
     throw Error(ErrorCode::bad_input, {file_, row_->line, column}, message);
@@ -152,7 +157,10 @@ class PointReader {
  private:
   double degreesIn(const CsvCell& cell, bool is_latitude) const {
     const char* const what = is_latitude ? "latitude" : "longitude";
-    decimal_signs_.see(cell.text, {file_, row_->line, cell.column});
+    if (cell.text.find(',') != std::string_view::npos)
+      decimal_signs_.seeCoordinate(cell.text);
+    else
+      decimal_signs_.see(cell.text, {file_, row_->line, cell.column});
     std::optional<double> value = document::numberOrCommaIn(cell.text);
     if (!value) value = degreesOfText(cell.text, is_latitude);
     if (!value) {
@@ -214,6 +222,7 @@ class PointReader {
   }
 
   const std::string& file_;
+  const char separator_;
   const PointColumns& columns_;
   const CsvRow* row_ = nullptr;
   mutable DecimalSigns decimal_signs_;
@@ -252,7 +261,8 @@ std::optional<std::vector<NamedPoint>> readPointTable(const std::string& file,
                                                       std::vector<std::string>* others) {
   const std::optional<std::string> text = tableText(file);
   if (!text) return std::nullopt;
-  document::CsvReader reader(*text, document::separatorOf(*text));
+  const char separator = document::separatorOf(*text);
+  document::CsvReader reader(*text, separator);
   CsvRow row;
   if (!reader.next(row)) return std::nullopt;
   // Spreadsheets write the separator above the header.
@@ -272,7 +282,7 @@ std::optional<std::vector<NamedPoint>> readPointTable(const std::string& file,
     }
     unused.emplace_back(row.cells[i].text);
   }
-  PointReader points_in(file, columns);
+  PointReader points_in(file, separator, columns);
   std::vector<NamedPoint> points;
   while (reader.next(row)) {
     if (row.cells.size() != count) {
@@ -282,6 +292,7 @@ std::optional<std::vector<NamedPoint>> readPointTable(const std::string& file,
     points.push_back(points_in.read(row));
   }
   points_in.requireOneDecimalSign();
+  if (const std::string unended = reader.unendedWarning(file, "a row"); !unended.empty()) logWarning(unended);
   if (others != nullptr) {
     *others = unused;
   } else if (!unused.empty()) {

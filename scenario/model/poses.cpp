@@ -4,7 +4,7 @@
 
 #include "base/geodesy/position_limits.h"
 #include "emscape/base/error.h"
-#include "scenario/file/named_items.h"
+#include "scenario/model/named_items.h"
 #include "scenario/model/posed_platform.h"
 
 namespace emscape::scenario {

@@ -127,13 +127,6 @@ BeamPose mountPose(BeamPose pose, const Emitter& emitter) {
   return pose;
 }
 
-/// True at t_s, or at some time of the duration that begins then.
-bool isActive(const Emitter& emitter, double t_s, double duration_s) {
-  if (duration_s > 0 && emitter.enabled && !emitter.active_s.empty())
-    return activeTime_s(emitter, t_s, duration_s) > 0;
-  return isActiveAt(emitter, t_s);
-}
-
 }  // namespace
 
 BeamPose aimed(BeamPose pose, double azimuth_deg, double elevation_deg) {
@@ -176,8 +169,14 @@ Snapshot snapshotOf(const std::shared_ptr<const Scenario>& scenario, const Inter
   for (const Emitter& emitter : scenario->emitters) {
     const PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(emitter.platform)];
     EmitterState state;
-    state.active = carrier.present &&
-                   isActive(emitter, t_s, intervalDuration_s(interval, emitter.scan, scenario->clock));
+    const auto platform = static_cast<std::size_t>(emitter.platform);
+    const double duration_s = intervalDuration_s(interval, emitter.scan, scenario->clock);
+    if (duration_s > 0 && pose_of[platform] == nullptr) {
+      state.active = !activeTimes(*scenario, emitter, t_s, duration_s).empty();
+    } else {
+      state.active = carrier.present &&
+                     (duration_s > 0 ? activeTime_s(emitter, t_s, duration_s) > 0 : isActiveAt(emitter, t_s));
+    }
     state.position = carrier.position;
     state.height_msl_m = carrier.height_msl_m;
     const BeamPose axes = platformAxes(carrier.attitude);

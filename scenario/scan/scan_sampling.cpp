@@ -8,7 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "emscape/base/units.h"
 #include "emscape/scenario/model/quantities.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "scenario/limits.h"
+#include "scenario/scan/scan_sweep.h"
 
 namespace emscape::scenario {
 namespace {
@@ -34,15 +38,21 @@ double litShare(std::vector<double> azimuths_deg, double width_deg, double range
   return std::min(lit_deg / range_deg, 1.0);
 }
 
+/// Whether a quantity does not depend on where beams point: the model of a single emitter.
+bool isOfAnyBeam(Quantity quantity, const Scenario& scenario) {
+  return quantity == Quantity::dominant_model && scenario.emitters.size() == 1;
+}
+
 /// Whether the output shows the beams of radars, or of other emitters, in their scan direction at the time.
-bool showsScans(const OutputSpec& output) {
+bool showsScans(const Scenario& scenario) {
+  const OutputSpec& output = scenario.output;
   return output.interval.kind == IntervalKind::instant &&
          std::any_of(output.quantities.begin(), output.quantities.end(), [&](const std::string& name) {
            const Quantity quantity = quantityFromName(name);
            const bool is_of_target = quantity == Quantity::jammer_to_signal_db ||
                                      quantity == Quantity::burn_through_margin_db ||
                                      (needsRadar(quantity) && output.radar_look == RadarAim::target);
-           return !is_of_target;
+           return !is_of_target && !isOfAnyBeam(quantity, scenario);
          });
 }
 
@@ -55,6 +65,62 @@ std::optional<IntervalKind> intervalOf(const OutputSpec& output) {
     if (has_all) return kind;
   }
   return std::nullopt;
+}
+
+/// Planes in which a beam stays where it is while a volume shows it.
+struct HeldPlanes {
+  bool azimuth = false, elevation = false;
+};
+
+HeldPlanes heldPlanes(Quantity quantity, const Scenario& scenario, const Emitter& emitter) {
+  const OutputSpec& output = scenario.output;
+  if (needsRadar(quantity) && emitter.kind != EmitterKind::radar) return {};
+  if (isOfAnyBeam(quantity, scenario)) return {};
+  const bool is_instant = output.interval.kind == IntervalKind::instant;
+  const bool shows_scan = !needsRadar(quantity) || (is_instant && output.radar_look == RadarAim::scan &&
+                                                    quantity != Quantity::jammer_to_signal_db &&
+                                                    quantity != Quantity::burn_through_margin_db);
+  const bool is_one_time = !(scenario.clock.duration_s >= scenario.clock.step_s);
+  if (shows_scan && is_instant && is_one_time) return {true, true};
+  if (!shows_scan && isSteered(emitter)) return {};
+  switch (emitter.scan.kind) {
+    case ScanKind::fixed:
+    case ScanKind::victim:
+      return {true, true};
+    case ScanKind::track:
+      return {shows_scan, shows_scan};
+    case ScanKind::rotate:
+    case ScanKind::sector:
+      return {false, true};
+    case ScanKind::raster:
+    case ScanKind::dwell_list:
+      break;
+  }
+  return {};
+}
+
+/// Whether a pattern is weak a beamwidth to either side of its axis: that of a cosecant is not.
+bool isPencil(const Antenna& antenna, bool in_azimuth, double width_deg) {
+  constexpr double kWeak = 0.316;  // amplitude: -10 dB
+  const auto amplitudeAt = [&](double side) {
+    const double angle_rad = degToRad(side * width_deg);
+    const Vec3d direction = in_azimuth ? Vec3d{std::cos(angle_rad), std::sin(angle_rad), 0}
+                                       : Vec3d{std::cos(angle_rad), 0, std::sin(angle_rad)};
+    return antenna.amplitudeTowards(direction, 0, 0);
+  };
+  return width_deg < 90 && amplitudeAt(-1) < kWeak && amplitudeAt(1) < kWeak;
+}
+
+/// The beam at the begin of a scenario; level across of one that is turned to other platforms.
+BeamPose firstPose(const Scenario& scenario, const Emitter& emitter) {
+  const ScanSpec& scan = emitter.scan;
+  if (scan.kind == ScanKind::victim || scan.kind == ScanKind::track) return platformAxes({0, 0, 0});
+  const TrackPoint at = pointAt(scenario.platforms[static_cast<std::size_t>(emitter.platform)], 0);
+  const BeamPose axes =
+      platformAxes({at.heading_deg.value_or(0), at.pitch_deg.value_or(0), at.roll_deg.value_or(0)});
+  const BeamDirection beam = beamAt(scan, 0);
+  return aimed(beam.electronic ? aimed(axes, scan.azimuth_deg, scan.elevation_deg) : axes, beam.azimuth_deg,
+               beam.elevation_deg);
 }
 
 /// Emitters whose beams are alike.
@@ -78,7 +144,72 @@ struct Beams {
   }
 };
 
+/// An emitter's activity and the times at which it is looked at.
+struct ActivitySampling {
+  double share = 0;              ///< of the time, active
+  double share_of_times = 0;     ///< active
+  int parts = 0, missed = 0;     ///< times of activity and pauses; those without any of the times
+  double shortest_s = HUGE_VAL;  ///< of these parts
+  bool missesActivity = false;   ///< a time of activity is missed, not only pauses
+};
+
+ActivitySampling activitySampling(const Scenario& scenario, const Emitter& emitter,
+                                  const std::vector<double>& times_s) {
+  const double first_s = times_s.front(), last_s = times_s.back();
+  const std::vector<TimeInterval> active = activeTimes(scenario, emitter, first_s, last_s - first_s);
+  ActivitySampling sampling;
+  const auto add = [&](double begin_s, double end_s, bool is_active) {
+    if (!(begin_s < end_s)) return;
+    if (is_active) sampling.share += (end_s - begin_s) / (last_s - first_s);
+    ++sampling.parts;
+    if (begin_s > first_s && end_s < last_s)
+      sampling.shortest_s = std::min(sampling.shortest_s, end_s - begin_s);
+    const auto time = std::lower_bound(times_s.begin(), times_s.end(), begin_s);
+    const bool is_met = time != times_s.end() && (*time < end_s || end_s == last_s);
+    if (is_met) return;
+    ++sampling.missed;
+    sampling.missesActivity = sampling.missesActivity || is_active;
+  };
+  double before_s = first_s;
+  for (const TimeInterval& time : active) {
+    add(before_s, time.begin_s, false);
+    add(time.begin_s, time.end_s, true);
+    before_s = time.end_s;
+  }
+  add(before_s, last_s, false);
+  const auto met = std::count_if(times_s.begin(), times_s.end(), [&](double t_s) {
+    const auto holds = [t_s](const TimeInterval& time) { return t_s >= time.begin_s && t_s < time.end_s; };
+    return t_s < last_s ? std::any_of(active.begin(), active.end(), holds) : isActiveAt(emitter, t_s);
+  });
+  sampling.share_of_times = static_cast<double>(met) / static_cast<double>(times_s.size());
+  return sampling;
+}
+
 }  // namespace
+
+std::string missedActivityText(const Scenario& scenario, const std::vector<double>& times_s) {
+  constexpr int kMany = 20;
+  constexpr double kSame = 0.02;
+  if (times_s.size() < 2) return "";
+  std::string text, alike;
+  for (const Emitter& emitter : scenario.emitters) {
+    if (!emitter.enabled || emitter.active_s.empty()) continue;
+    const ActivitySampling sampling = activitySampling(scenario, emitter, times_s);
+    const bool is_fair =
+        sampling.parts >= kMany && std::abs(sampling.share - sampling.share_of_times) <= kSame;
+    if (sampling.missed == 0 || is_fair) continue;
+    if (!text.empty()) {
+      alike += fmt::format("{}'{}'", alike.empty() ? "; likewise " : ", ", emitter.name);
+      continue;
+    }
+    text = fmt::format(
+        "emitter '{}' switches on and off between the times: from {:g} to {:g} s it radiates {:.0f} % of the "
+        "time, and at {:.0f} % of the {} times; steps of {:g} s or less meet each of its {}",
+        emitter.name, times_s.front(), times_s.back(), 100 * sampling.share, 100 * sampling.share_of_times,
+        times_s.size(), sampling.shortest_s, sampling.missesActivity ? "active times" : "pauses");
+  }
+  return text + alike;
+}
 
 std::optional<ScanSampling> scanSampling(const ScanSpec& scan, double beamwidth_az_deg, const Clock& clock) {
   const bool rotates = scan.kind == ScanKind::rotate;
@@ -103,7 +234,7 @@ bool leavesGaps(const ScanSampling& sampling, double beamwidth_az_deg) {
 }
 
 std::optional<UnlitAzimuths> unlitAzimuths(const Scenario& scenario, const Clock& clock) {
-  if (!showsScans(scenario.output)) return std::nullopt;
+  if (!showsScans(scenario)) return std::nullopt;
   const std::vector<Emitter>& emitters = scenario.emitters;
   std::vector<Beams> beams;
   UnlitAzimuths unlit;
@@ -128,6 +259,120 @@ std::optional<UnlitAzimuths> unlitAzimuths(const Scenario& scenario, const Clock
         fmt::format("; the output's 'interval: {{kind: {}, turns: 1}}' shows what is lit between the steps",
                     toString(*kind));
   return unlit;
+}
+
+std::optional<NarrowBeam> narrowBeam(const Scenario& scenario, const Emitter& emitter) {
+  constexpr double kOfRegion = 5;
+  if (!emitter.enabled) return std::nullopt;
+  HeldPlanes held;
+  for (const std::string& name : scenario.output.quantities) {
+    const HeldPlanes of_quantity = heldPlanes(quantityFromName(name), scenario, emitter);
+    held = {held.azimuth || of_quantity.azimuth, held.elevation || of_quantity.elevation};
+  }
+  const Region& region = scenario.region;
+  const Dims& dims = region.dims;
+  const double worth_saying_m = std::max(region.size_m.x, region.size_m.y) / kOfRegion;
+  const double level_m = std::max(region.size_m.x / dims.x, region.size_m.y / dims.y),
+               upright_m = region.size_m.z / dims.z;
+  // In a plane, from there each line of centres along an axis that crosses the beam has one in it.
+  struct Plane {
+    bool in_azimuth;
+    double width_deg, from_level_m, from_upright_m;
+    double range_m() const { return std::max(from_level_m, from_upright_m); }
+  };
+  std::vector<Plane> planes;
+  /// @param across  unit vector across the beam in the plane, east-north-up
+  const auto add = [&](bool in_azimuth, double width_deg, const Vec3d& across) {
+    if (!isPencil(*emitter.antenna, in_azimuth, width_deg)) return;
+    const double width_rad = degToRad(width_deg);
+    planes.push_back({in_azimuth, width_deg, level_m * std::hypot(across.x, across.y) / width_rad,
+                      upright_m * std::abs(across.z) / width_rad});
+  };
+  const BeamPose pose = firstPose(scenario, emitter);
+  if (held.azimuth) add(true, emitter.antenna->beamwidth_az_deg, pose.right);
+  if (held.elevation) add(false, emitter.antenna->beamwidth_el_deg, pose.up);
+  double range_m = 0;  // the ellipse of half power covers a cell of the centres
+  for (const Plane& plane : planes) range_m = std::hypot(range_m, plane.range_m());
+  if (range_m <= worth_saying_m) return std::nullopt;
+  const Plane& plane = *std::max_element(
+      planes.begin(), planes.end(), [](const Plane& a, const Plane& b) { return a.range_m() < b.range_m(); });
+  const bool is_level = plane.from_level_m > plane.from_upright_m;
+  NarrowBeam narrow{plane.in_azimuth, is_level, plane.width_deg, is_level ? level_m : upright_m,
+                    range_m,          dims};
+  // Of both planes, so that they are at most worth_saying_m together.
+  const double other_m = std::sqrt(std::max(range_m * range_m - plane.range_m() * plane.range_m(), 0.0));
+  const double wanted_m = worth_saying_m * (planes.size() == 1               ? 1
+                                            : other_m < 0.3 * worth_saying_m ? 0.95
+                                                                             : 0.7);
+  const auto refine = [&](int& count, int given, double from_m) {
+    if (from_m <= wanted_m) return;
+    count = std::max(count, static_cast<int>(std::ceil(given * from_m / wanted_m / 10) * 10));
+  };
+  for (const Plane& each : planes) {
+    refine(narrow.finer.x, dims.x, each.from_level_m);
+    refine(narrow.finer.y, dims.y, each.from_level_m);
+    refine(narrow.finer.z, dims.z, each.from_upright_m);
+  }
+  return narrow;
+}
+
+std::string narrowBeamText(const Scenario& scenario, const Emitter& emitter, const NarrowBeam& beam) {
+  const Region& region = scenario.region;
+  const bool is_everywhere = beam.range_m >= length(region.size_m);
+  std::string text = fmt::format(
+      "the beam of '{}', {:.3g} deg in {}{}, is narrower than the voxels of {:.4g} m {}: there it "
+      "passes between their centres, and the volume has holes",
+      emitter.name, beam.width_deg, beam.in_azimuth ? "azimuth" : "elevation",
+      beam.in_azimuth == beam.is_level ? ""
+      : beam.is_level                  ? " of the antenna, by tilt or roll along the ground"
+                                       : " of the antenna, by tilt or roll in height",
+      beam.voxel_m,
+      is_everywhere ? "in the whole region" : fmt::format("up to {:.3g} km", beam.range_m / 1000));
+  const auto addIfItHelps = [&](const std::string& more, const auto& edit) {
+    Scenario changed = scenario;
+    Emitter of_changed = emitter;
+    edit(changed, of_changed);
+    const bool helps = !narrowBeam(changed, of_changed);
+    if (helps) text += "; " + more;
+    return helps;
+  };
+  if (std::max({beam.finer.x, beam.finer.y, beam.finer.z}) <= kMaxDim) {
+    addIfItHelps(
+        fmt::format("'region: {{dims: [{}, {}, {}]}}' has them no farther than a fifth of the region",
+                    beam.finer.x, beam.finer.y, beam.finer.z),
+        [&](Scenario& changed, Emitter&) { changed.region.dims = beam.finer; });
+  }
+  const auto look = [](Scenario& changed, Emitter&) { changed.output.radar_look = RadarAim::target; };
+  const auto turn = [](Scenario&, Emitter& turned) {
+    turned.scan = {};
+    turned.scan.kind = ScanKind::rotate;
+    turned.scan.rate_rpm = 12;
+  };
+  const OutputSpec& output = scenario.output;
+  if (emitter.scan.kind == ScanKind::fixed && emitter.kind == EmitterKind::radar) {
+    const std::string still =
+        fmt::format("a radar with a fixed beam does not turn{}",
+                    output.radar_look == RadarAim::target ? ", also with 'radar_look: target'" : "");
+    const char* const rotate = "'scan: {kind: rotate, rate_rpm: 12}'";
+    if (!addIfItHelps(fmt::format("{}: {} turns it", still, rotate), turn)) {
+      addIfItHelps(
+          fmt::format("{}: {} and 'output: {{radar_look: target}}' have it on each voxel", still, rotate),
+          [&](Scenario& changed, Emitter& turned) {
+            turn(changed, turned);
+            look(changed, turned);
+          });
+    }
+  }
+  const bool has_beam = output.radar_look == RadarAim::scan &&
+                        output.interval.kind == IntervalKind::instant &&
+                        addIfItHelps("'output: {radar_look: target}' has the beam on each voxel", look);
+  const auto kind = intervalOf(output);
+  if (!has_beam && kind && output.interval.kind == IntervalKind::instant) {
+    addIfItHelps(
+        fmt::format("'output: {{interval: {{kind: {}, turns: 1}}}}' has all that it passes", toString(*kind)),
+        [&](Scenario& changed, Emitter&) { changed.output.interval.kind = *kind; });
+  }
+  return text;
 }
 
 std::string mergedLooksText(const std::string& radar, const ScanSpec& scan,

@@ -157,6 +157,31 @@ void visitActive(const Emitter& emitter, double begin_s, double duration_s, cons
   }
 }
 
+/// Times in [begin, end) at which a platform is present, ascending, apart.
+std::vector<TimeInterval> presentTimes(const Platform& platform, const Clock& clock, double begin_s,
+                                       double end_s) {
+  std::vector<TimeInterval> present;
+  const auto add = [&](double from_s, double to_s) {
+    from_s = std::max(from_s, begin_s);
+    to_s = std::min(to_s, end_s);
+    if (from_s < to_s) present.push_back({from_s, to_s});
+  };
+  if (!platform.moves()) {
+    if (platform.isPresentAt(begin_s)) add(begin_s, end_s);
+    return present;
+  }
+  const bool holds = platform.outside_track == OutsideTrack::hold;
+  const std::vector<TrackPoint>& track = platform.track;
+  double from_s = holds ? begin_s : track.front().t_s;
+  for (std::size_t n = 0; n + 1 < track.size(); ++n) {
+    if (!track[n].gap_after) continue;
+    add(from_s, track[n].t_s);
+    from_s = track[n + 1].t_s;
+  }
+  add(from_s, holds || track.back().t_s >= clock.duration_s ? end_s : track.back().t_s);
+  return present;
+}
+
 }  // namespace
 
 bool operator==(const ScanSweep& a, const ScanSweep& b) {
@@ -187,6 +212,21 @@ double activeTime_s(const Emitter& emitter, double begin_s, double duration_s) {
   double active_s = 0;
   visitActive(emitter, begin_s, duration_s, [&](double, double, double span_s) { active_s += span_s; });
   return active_s;
+}
+
+std::vector<TimeInterval> activeTimes(const Scenario& scenario, const Emitter& emitter, double begin_s,
+                                      double duration_s) {
+  const std::vector<TimeInterval> present =
+      presentTimes(scenario.platforms[static_cast<std::size_t>(emitter.platform)], scenario.clock, begin_s,
+                   begin_s + duration_s);
+  std::vector<TimeInterval> times;
+  visitActive(emitter, begin_s, duration_s, [&](double from_s, double to_s, double) {
+    for (const TimeInterval& here : present) {
+      const TimeInterval both{std::max(from_s, here.begin_s), std::min(to_s, here.end_s)};
+      if (both.begin_s < both.end_s) times.push_back(both);
+    }
+  });
+  return times;
 }
 
 double intervalDuration_s(const IntervalSpec& interval, const ScanSpec& scan, const Clock& clock) {

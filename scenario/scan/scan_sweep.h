@@ -7,6 +7,7 @@
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/emitter.h"
 #include "emscape/scenario/model/interval.h"
+#include "emscape/scenario/model/scenario.h"
 
 namespace emscape::scenario {
 
@@ -53,6 +54,12 @@ bool isActiveAt(const Emitter& emitter, double t_s);
 /// Time (s) in [begin, begin + duration) at which an emitter is active. Times in several of Emitter::active_s
 /// count once, here and below.
 double activeTime_s(const Emitter& emitter, double begin_s, double duration_s);
+
+/// Times in [begin, begin + duration) at which an emitter is active and its platform present, ascending,
+/// apart. A platform whose track reaches the end of the clock stays present after it. Ends that differ from
+/// the interval's by rounding are the interval's.
+std::vector<TimeInterval> activeTimes(const Scenario& scenario, const Emitter& emitter, double begin_s,
+                                      double duration_s);
 
 /// Duration (s) of an emitter's interval. For a beam that does not move, turns are counted in steps of the
 /// clock.

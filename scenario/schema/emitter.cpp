@@ -79,12 +79,12 @@ const ObjectSpec& waveformSpec() {
           required("pulse_width_s", number("s").above(0).to(1),
                    "of the transmitted pulse, before compression; shorter than 1 / prf_hz"),
           optional("instrumented_range_m", number("m").above(0).to(1e8),
-                   "beyond which the radar does not look"),
-          optional(
-              "limits_detection", simple(ValueType::boolean),
-              "true (the default): nothing is detected beyond the instrumented and the unambiguous range, "
-              "and echoes that arrive while the radar transmits are weaker by the part that is lost; "
-              "false: detection wherever there are echoes"),
+                   "radars: beyond which the radar does not look"),
+          optional("limits_detection", simple(ValueType::boolean),
+                   "radars: true (the default): nothing is detected beyond the instrumented and the "
+                   "unambiguous range, "
+                   "and echoes that arrive while the radar transmits are weaker by the part that is lost; "
+                   "false: detection wherever there are echoes"),
       }};
   return spec;
 }
@@ -124,6 +124,8 @@ const ObjectSpec& clutterSpec() {
                    "length of the resolution cell; by default c pulse_width_s / 2, that of a pulse without "
                    "compression"),
           optional("mti", object(mtiSpec()), "Doppler filter; by default none"),
+          optional("independent_samples", kInteger.from(1).to(1e6),
+                   "of the clutter among the pulses integrated; by default all of them, as noise"),
           optional(
               "target_radial_speed_m_s", number("m/s").from(-20000).to(20000),
               "in volumes; by default the mean response of all speeds (canceller), the middle between two "
@@ -157,7 +159,7 @@ const ObjectSpec& emitterSpec() {
           {
               required("name", kName, "on pictures and in volumes"),
               required("platform", kName, "name of its platform"),
-              required("kind", choiceOf<EmitterKind>(), "kind"),
+              required("kind", choiceOf<EmitterKind>(), "what it is; its further keys depend on it"),
               byDefault("enabled", simple(ValueType::boolean), "true",
                         "false: switched off; the results are those of an emitter that never transmits"),
               required("frequency_hz", kFrequency, "carrier"),
@@ -173,12 +175,13 @@ const ObjectSpec& emitterSpec() {
           {
               required("receiver", object(radarReceiverSpec()), "the radar's own", {"radar"}),
               optional("waveform", object(waveformSpec()),
-                       "the pulses; without it the mean power is taken as power_w", {"radar"}),
+                       "the pulses; without it the mean power is taken as power_w", {"radar", "jammer"}),
               optional("clutter", object(clutterSpec()),
                        "echoes of land, sea and rain, for sclnr_db and detection_probability; needs waveform",
                        {"radar"}),
               optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMaxItems),
-                       "[begin, end) of the times at which it radiates; always by default"),
+                       "[begin, end) of the times at which it radiates, such as [[0, 30], [60, 90]]; always "
+                       "by default"),
               optional(
                   "blink", object(blinkSpec()),
                   "on and off by turns, within active_s, to the end of the scenario; at most 10000 times"),

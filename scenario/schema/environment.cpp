@@ -2,6 +2,7 @@
 #include "emscape/scenario/model/scenario.h"
 #include "propagation/air/rain.h"
 #include "propagation/p2108/p2108.h"
+#include "scenario/limits.h"
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"
 
@@ -51,7 +52,7 @@ const ObjectSpec& regionSpec() {
                     "box tangent at the origin"),
           required("size_m", listOf(number("m").from(1).to(4e6), 3, 3),
                    "extent along x, y and z; a voxel's x and y differ by at most 1000 times"),
-          required("dims", listOf(kInteger.from(2).to(4096), 3, 3),
+          required("dims", listOf(kInteger.from(2).to(kMaxDim), 3, 3),
                    "voxels along x, y and z; at most 2^31 in all"),
       }};
   return spec;
@@ -195,13 +196,11 @@ const ObjectSpec& groundSpec() {
               "terminal_clutter_percent",
               number("percent").from(propagation::kP2108Location.min).to(propagation::kP2108Location.max),
               Ground{}.terminal_clutter_percent, "of locations in which that loss is not exceeded"),
-          byDefault("terminal_clutter_below_m", number("m").from(0).to(100),
-                    Ground{}.terminal_clutter_below_m,
-                    "ends up to this height above the ground are within the clutter"),
           byDefault(
-              "terminal_clutter_ends", choiceOf<propagation::ClutterEnds>(),
-              toString(Ground{}.terminal_clutter_ends),
-              "receiver: the far ends of paths (receivers, targets, voxels); both: the emitters' as well"),
+              "terminal_clutter_below_m", number("m").from(0).to(100), Ground{}.terminal_clutter_below_m,
+              "ends (antennas, targets, voxels) up to this height above the ground are within the clutter"),
+          byDefault("terminal_clutter_ends", choice({"receiver", "both"}), "both",
+                    "of earlier versions: each end's own height decides, whatever this key says"),
           byDefault(
               "terminal_clutter_combine", choiceOf<propagation::ClutterCombination>(),
               toString(Ground{}.terminal_clutter_combine),

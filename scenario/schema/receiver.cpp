@@ -30,6 +30,19 @@ KeySpec antennaNoiseKey(const std::string& condition = "") {
           condition);
 }
 
+const ObjectSpec& sideLobeBlankingSpec() {
+  static const ObjectSpec spec{
+      "side_lobe_blanking",
+      "",
+      {
+          required("auxiliary_gain_dbi", kGain,
+                   "of the omnidirectional auxiliary antenna, above the side lobes"),
+          byDefault("threshold_db", number("dB").from(-30).to(30), SideLobeBlanking{}.threshold_db,
+                    "power in the auxiliary over that in the main channel from which a pulse is blanked"),
+      }};
+  return spec;
+}
+
 }  // namespace
 
 const ObjectSpec& radarReceiverSpec() {
@@ -71,6 +84,8 @@ const ObjectSpec& radarReceiverSpec() {
                    "up"),
           optional("required_signal_to_jammer_db", number("dB").from(-100).to(100),
                    "required for burn-through; by default that of a detection probability of 0.5"),
+          optional("side_lobe_blanking", object(sideLobeBlankingSpec()),
+                   "blanks jammers' pulses in the side lobes; by default none"),
           byDefault("target_rcs_m2", kRcs, RadarReceiver{}.target_rcs_m2, "radar cross section"),
       }};
   return spec;

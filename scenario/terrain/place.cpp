@@ -185,8 +185,12 @@ TerrainSheet resample(const TerrainSheet& sheet, const GeoBox& part) {
 }  // namespace
 
 GeoBox geographicBoxOf(const TerrainFile& file) {
-  return geographicBox(file, extentOf(file.georeference().lattice, file.head().columns, file.head().rows,
-                                      file.georeference().is_area));
+  const GeoBox box = geographicBox(file, extentOf(file.georeference().lattice, file.head().columns,
+                                                  file.head().rows, file.georeference().is_area));
+  if (!(box.south_deg <= box.north_deg))
+    throw Error(ErrorCode::bad_input,
+                "elevation file " + file.head().name + ": its posts are not on the earth");
+  return box;
 }
 
 std::vector<RasterTile> tilesWithin(const TerrainFilePtr& file, const GeoBox& box) {

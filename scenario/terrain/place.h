@@ -9,6 +9,7 @@
 namespace emscape::scenario {
 
 /// The longitudes and latitudes (deg) that a file covers; east may exceed 180.
+/// @throws Error (bad_input) if none of its posts is on the earth
 GeoBox geographicBoxOf(const TerrainFile& file);
 
 /// The posts of a file that a box needs, as tiles: none if they do not overlap, several if the box overlaps

@@ -20,6 +20,7 @@
 #include "scenario/terrain/file_notes.h"
 #include "scenario/terrain/georeference.h"
 #include "scenario/terrain/place.h"
+#include "scenario/terrain/terrain_faults.h"
 #include "scenario/terrain/view.h"
 
 namespace emscape::scenario {
@@ -311,12 +312,7 @@ void TerrainMosaic::requireSurface(const TerrainSpec& spec, const GeoBox& box) {
 }
 
 void TerrainMosaic::addSurface(const TerrainSpec& spec, const GeoBox& box) {
-  TerrainSpec surface;
-  surface.files = spec.surface_files;
-  surface.locations = spec.surface_locations;
-  surface.keys = spec.surface_keys;
-  surface.vertical_datum = spec.vertical_datum;
-  surface_ = Terrain::load(surface, box);
+  surface_ = Terrain::load(surfaceOf(spec), box);
   for (const std::string& warning : surface_->warnings()) {
     if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end())
       warnings_.push_back(warning);

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "base/files/whole_file.h"
 #include "emfield/columns/station.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/study/maps/area.h"
@@ -142,8 +144,11 @@ Blockage computeBlockage(const std::shared_ptr<const scenario::Scenario>& scenar
   const std::size_t gates = static_cast<std::size_t>(request.azimuths) * blockage.ranges;
   for (std::vector<float>* values : {&blockage.edge_msl_m, &blockage.partial, &blockage.cumulative})
     values->resize(gates);
+  const WorkPart part("beam blockage", 0, 1);
+  std::atomic<int> done{0};
   parallelFor(request.azimuths, 1, [&](int begin, int end) {
     for (int azimuth = begin; azimuth < end; ++azimuth) fillAzimuth(station, *terrain, azimuth, blockage);
+    reportDone(static_cast<double>(done += end - begin) / request.azimuths);
   });
   if (!request.range_m) endWithKnownGround(blockage);
   return blockage;
@@ -189,11 +194,11 @@ render::Image8 drawBlockage(const Blockage& blockage, int width) {
   return drawMap(made.grid, made.map, options);
 }
 
-void writeBlockageCsv(const Blockage& blockage, const std::string& file) {
+void writeBlockageCsv(const Blockage& blockage, const std::string& file, Replaces replaces) {
   const auto text = [](float value, int decimals) {
     return std::isnan(value) ? std::string() : fmt::format("{:.{}f}", value, decimals);
   };
-  writeWhole(file, [&](std::ostream& out) {
+  const auto write = [&](std::ostream& out) {
     out << "azimuth_deg,range_m,beam_msl_m,ground_msl_m,partial_blockage,cumulative_blockage\n";
     for (int azimuth = 0; azimuth < blockage.request.azimuths; ++azimuth) {
       for (int n = 0; n < blockage.ranges; ++n) {
@@ -203,7 +208,8 @@ void writeBlockageCsv(const Blockage& blockage, const std::string& file) {
                            text(blockage.partial[gate], 4), text(blockage.cumulative[gate], 4));
       }
     }
-  });
+  };
+  writeWhole(file, write, replaces);
 }
 
 }  // namespace emscape::study

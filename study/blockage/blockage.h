@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/files/own_file.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/model/scenario.h"
 #include "study/files/geotiff.h"
@@ -74,9 +75,10 @@ struct BlockageMap {
 BlockageMap mapOf(const Blockage& blockage);
 render::Image8 drawBlockage(const Blockage& blockage, int width);
 /// Rows of azimuth and range. Written as a whole.
-void writeBlockageCsv(const Blockage& blockage, const std::string& file);
+void writeBlockageCsv(const Blockage& blockage, const std::string& file, Replaces replaces = Replaces::own);
 /// Arrays over azimuth and range with the positions of the gates (netCDF, CF conventions). Written as a
 /// whole.
-void writeBlockageNetcdf(const Blockage& blockage, const std::string& file);
+void writeBlockageNetcdf(const Blockage& blockage, const std::string& file,
+                         Replaces replaces = Replaces::own);
 
 }  // namespace emscape::study

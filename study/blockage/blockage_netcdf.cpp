@@ -4,7 +4,9 @@
 
 #include "base/files/unfinished_file.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "scenario/terrain/gdal_messages.h"
 #include "study/blockage/blockage.h"
 #include "study/maps/gdal_arrays.h"
@@ -45,15 +47,17 @@ class ScanFile {
     addAxis("range", gate_m, "m", "of the gate's middle, along the beam");
     std::vector<double> latitude_deg(azimuths * ranges), longitude_deg(azimuths * ranges);
     std::vector<float> beam_msl_m(azimuths * ranges);
-    for (std::size_t gate = 0; gate < beam_msl_m.size(); ++gate) {
-      const double slant_m = gate_m[gate % ranges];
-      const GeodeticPosition at =
-          geodesicDirect(blockage_.position.latitude_deg, blockage_.position.longitude_deg,
-                         degToRad(azimuth_deg[gate / ranges]), blockage_.ground_m(slant_m));
-      latitude_deg[gate] = at.latitude_deg;
-      longitude_deg[gate] = at.longitude_deg;
-      beam_msl_m[gate] = static_cast<float>(blockage_.axis_msl_m(slant_m));
-    }
+    parallelFor(blockage_.request.azimuths, 1, [&](int begin, int end) {
+      for (std::size_t gate = begin * ranges; gate < end * ranges; ++gate) {
+        const double slant_m = gate_m[gate % ranges];
+        const GeodeticPosition at =
+            geodesicDirect(blockage_.position.latitude_deg, blockage_.position.longitude_deg,
+                           degToRad(azimuth_deg[gate / ranges]), blockage_.ground_m(slant_m));
+        latitude_deg[gate] = at.latitude_deg;
+        longitude_deg[gate] = at.longitude_deg;
+        beam_msl_m[gate] = static_cast<float>(blockage_.axis_msl_m(slant_m));
+      }
+    });
     add("lat", latitude_deg.data(), GDT_Float64, "degrees_north", "of the ground below the gate", "latitude");
     add("lon", longitude_deg.data(), GDT_Float64, "degrees_east", "of the ground below the gate",
         "longitude");
@@ -91,6 +95,7 @@ class ScanFile {
 
   void add(const char* name, const void* values, GDALDataType type, const char* unit, const char* description,
            const char* standard_name = nullptr) {
+    checkpoint();
     const char* const options[] = {"COMPRESS=DEFLATE", nullptr};
     const gdal::ValueType real = numberType(type);
     const gdal::Array array =
@@ -123,8 +128,9 @@ class ScanFile {
 
 }  // namespace
 
-void writeBlockageNetcdf(const Blockage& blockage, const std::string& file) {
-  UnfinishedFile unfinished(file);
+void writeBlockageNetcdf(const Blockage& blockage, const std::string& file, Replaces replaces) {
+  requireOwnBeside(file);
+  UnfinishedFile unfinished(file, replaces);
   {
     ScanFile scan(blockage, unfinished);
     scan.write();

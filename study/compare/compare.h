@@ -76,9 +76,12 @@ struct CompareRequest {
 /// @throws Error (usage, bad_input) as computeComparison() would, before it computes anything
 void checkRequest(const CompareRequest& request, const scenario::Scenario& a, const scenario::Scenario& b);
 
+/// Name of the map of changes: PRODUCT_change for products that mark an area, else PRODUCT_difference.
+std::string changeNameOf(Product product);
+
 /// Computes the same maps of two scenarios and their differences. Products that mark an area give a map of
 /// classes (neither, gained, lost, kept), all others the difference B - A. Otherwise as computeCoverage().
-/// @param take receives the maps PRODUCT_change and PRODUCT_difference
+/// @param take receives the maps of changeNameOf()
 /// @throws Error (usage) for Product::best
 Comparison computeComparison(const ComparedScenario& a, const ComparedScenario& b, const MapGrid& grid,
                              const CompareRequest& request, const emfield::FieldOptions& options,

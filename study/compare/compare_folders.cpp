@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "emscape/base/error.h"
@@ -9,6 +10,8 @@
 #include "study/compare/changed_areas.h"
 #include "study/compare/compare.h"
 #include "study/compare/map_comparer.h"
+#include "study/report/earlier_outputs.h"
+#include "study/report/map_report.h"
 
 namespace emscape::study {
 namespace {
@@ -121,6 +124,20 @@ void requireChoice(const CoverageFolder& folder, const MapChoice& choice) {
   if (!has_time && !times.empty()) failNotThere(folder, "--times", "at these times", times);
 }
 
+/// The maps that are not as the folder's study.json lists them.
+/// @param maps  that are compared, and were read
+std::vector<std::string> changedMapsOf(const CoverageFolder& folder, const std::set<std::size_t>& maps) {
+  std::set<std::string> files;
+  for (const std::size_t map : maps) files.insert(folder.geotiffs[map]);
+  std::vector<std::string> changed;
+  for (const nlohmann::ordered_json& output : outputsOf(folder.path, "coverage")) {
+    const std::string file = output.at("file");
+    if (files.count(file) > 0 && digestJson(file, folder.path / file) != output)
+      changed.push_back((folder.path / file).string());
+  }
+  return changed;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::size_t, std::size_t>> pairsOf(const CoverageFolder& a, const CoverageFolder& b,
@@ -160,9 +177,12 @@ Comparison compareFolders(const CoverageFolder& a, const CoverageFolder& b,
   std::vector<Product> products;
   for (const auto& [of_a, of_b] : chosen) products.push_back(a.maps[of_a].product);
   MapComparer comparer(*a.grid, products, areas, take);
+  std::set<std::size_t> read_a, read_b;
   for (std::size_t n = 0; n < chosen.size(); ++n) {
     if (progress) progress("maps", static_cast<double>(n) / static_cast<double>(chosen.size()));
     comparer.add(readMap(a, chosen[n].first), readMap(b, chosen[n].second));
+    read_a.insert(chosen[n].first);
+    read_b.insert(chosen[n].second);
   }
   if (progress) progress("maps", 1);
   Comparison comparison = comparer.finish();
@@ -174,6 +194,12 @@ Comparison compareFolders(const CoverageFolder& a, const CoverageFolder& b,
     return folder.has_inputs ? warningsOf(*folder.scenario) : std::vector<std::string>{};
   };
   comparison.warnings = warningsOfBoth(checkOf(a), checkOf(b));
+  for (const auto& [folder, read] : {std::pair(&a, &read_a), std::pair(&b, &read_b)}) {
+    for (const std::string& file : changedMapsOf(*folder, *read)) {
+      comparison.warnings.push_back(file +
+                                    ": was changed since emscape coverage wrote it; it is compared as it is");
+    }
+  }
   for (const CoverageFolder* folder : {&a, &b}) {
     if (folder->has_inputs) continue;
     comparison.warnings.push_back(fmt::format(

@@ -9,6 +9,10 @@
 namespace emscape::study {
 namespace {
 
+bool isArea(Product product) {
+  return info(product).area_class >= 0;
+}
+
 /// The map of changes, and its figures.
 class Pair {
  public:
@@ -17,9 +21,10 @@ class Pair {
     row.height = a.height;
     row.time_s = a.time_s;
     row.unit = a.unit;
-    row.is_area = info(a.product).area_class >= 0;
+    row.is_area = isArea(a.product);
     row.mean_difference = row.min_difference = row.max_difference = NAN;
     map = a;
+    map.name = changeNameOf(a.product);
     setAnswers();
     map.labels.clear();
     map.colors.clear();
@@ -55,7 +60,6 @@ class Pair {
 
   void change() {
     constexpr int kGreen = 2, kVermilion = 5, kSkyBlue = 1;
-    map.name += "_change";
     map.kind = MapKind::classes;
     map.title = "change of " + a_.title;
     map.subject = "change of " + a_.subject;
@@ -74,7 +78,6 @@ class Pair {
   }
 
   void differ() {
-    map.name += "_difference";
     map.kind = MapKind::difference;
     map.title = a_.title + ", B - A";
     map.subject = "difference B - A of " + a_.subject;
@@ -122,8 +125,7 @@ MapComparer::MapComparer(const MapGrid& grid, const std::vector<Product>& produc
                          std::function<void(const Map&)> take)
     : grid_(grid), areas_(areas), take_(std::move(take)) {
   // A path belongs to one height and time, and areas of several products would repeat each other.
-  std::copy_if(products.begin(), products.end(), std::back_inserter(products_),
-               [](Product product) { return info(product).area_class >= 0; });
+  std::copy_if(products.begin(), products.end(), std::back_inserter(products_), isArea);
 }
 
 void MapComparer::add(const CoverageMap& a, const CoverageMap& b) {
@@ -151,6 +153,10 @@ Comparison MapComparer::finish() {
     comparison.changed_areas.insert(comparison.changed_areas.end(), areas->begin(), areas->end());
   }
   return comparison;
+}
+
+std::string changeNameOf(Product product) {
+  return info(product).name + std::string(isArea(product) ? "_change" : "_difference");
 }
 
 void requireDifferences(const std::vector<Product>& products) {

@@ -14,7 +14,7 @@ class MapComparer {
  public:
   /// @param products  of the maps; areas are collected for the first product that marks an area
   /// @param areas     number of changed areas to keep, for gained and lost each
-  /// @param take      receives the maps PRODUCT_change and PRODUCT_difference
+  /// @param take      receives the maps of changeNameOf()
   MapComparer(const MapGrid& grid, const std::vector<Product>& products, int areas,
               std::function<void(const Map&)> take);
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "emfield/excess/clutter_text.h"
+#include "emfield/excess/model_check.h"
 #include "emfield/link/target_view.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -117,11 +118,18 @@ class Track {
       solver.update(snapshot);
       rows.push_back(rowOf(snapshot, solver, p));
     }
-    addOnce(warnings, solver.warnings());
+    emfield::SteepGrounds now;
+    addOnce(warnings_, solver.warnings(&now));
+    emfield::keepSteepest(steep_, now);
+  }
+
+  std::set<std::string> warnings() const {
+    std::set<std::string> all = warnings_;
+    addOnce(all, emfield::steepGroundWarnings(steep_));
+    return all;
   }
 
   std::vector<int> emitters;  ///< with a separate value
-  std::set<std::string> warnings;
 
  private:
   bool isOwn(int emitter) const {
@@ -205,6 +213,8 @@ class Track {
   emfield::FieldOptions options_;
   std::shared_ptr<const scenario::Scenario> scenario_;
   std::vector<std::size_t> channels_;  ///< of the solver, by emitter
+  std::set<std::string> warnings_;
+  emfield::SteepGrounds steep_;
   bool finds_causes_ = false;
 };
 
@@ -333,7 +343,7 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
   }
   if (progress) progress("track", 1);
   exposure.warnings = warningsOf(*scenario);
-  exposure.warnings.insert(exposure.warnings.end(), track.warnings.begin(), track.warnings.end());
+  for (const std::string& warning : track.warnings()) exposure.warnings.push_back(warning);
   for (const std::string& warning :
        {scenario::outsideClockText(request.times_s, scenario->clock),
         scenario::absenceText(scenario->platforms[request.platform], request.times_s)}) {
@@ -364,6 +374,8 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
   if (const std::optional<std::string> warning = scanWarning(*scenario, exposure)) {
     exposure.warnings.push_back(*warning);
   }
+  if (std::string text = scenario::missedActivityText(*scenario, request.times_s); !text.empty())
+    exposure.warnings.push_back(std::move(text));
   return exposure;
 }
 

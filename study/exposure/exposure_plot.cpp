@@ -21,6 +21,27 @@ constexpr render::Ink kTogether{{0.10F, 0.11F, 0.13F}};
 constexpr render::Ink kThreshold{{0.76F, 0.12F, 0.13F}};
 constexpr render::Ink kUnknown{{0.87F, 0.87F, 0.89F}};
 
+/// Adds the points of the rows, wide where the threshold is reached: with one more where a line between
+/// values crosses it.
+template <class Value, class Height>
+void addPoints(const Exposure& exposure, const Value& valueOf, const Height& heightOf, PlotLine& line) {
+  const double threshold = exposure.request.threshold;
+  for (std::size_t t = 0; t < exposure.rows.size(); ++t) {
+    const ExposureRow& row = exposure.rows[t];
+    const double value = valueOf(row), height = heightOf(row);
+    const bool is_reached = value >= threshold;
+    if (t > 0) {
+      const ExposureRow& last = exposure.rows[t - 1];
+      const double part = (threshold - valueOf(last)) / (value - valueOf(last));
+      if (is_reached != (valueOf(last) >= threshold) && std::isfinite(part)) {
+        line.points.push_back({last.time_s + part * (row.time_s - last.time_s),
+                               heightOf(last) + part * (height - heightOf(last)), is_reached});
+      }
+    }
+    line.points.push_back({row.time_s, height, is_reached});
+  }
+}
+
 /// The values of each emitter, of all, and the threshold.
 std::vector<PlotLine> linesOf(const Exposure& exposure) {
   std::vector<PlotLine> lines;
@@ -28,10 +49,7 @@ std::vector<PlotLine> linesOf(const Exposure& exposure) {
   const auto addLine = [&](const std::string& name, const render::Ink& ink,
                            const auto& valueOf) -> PlotLine& {
     PlotLine line{name, {}, ink};
-    for (const ExposureRow& row : exposure.rows) {
-      const double value = valueOf(row);
-      line.points.push_back({row.time_s, value, value >= threshold});
-    }
+    addPoints(exposure, valueOf, valueOf, line);
     lines.push_back(std::move(line));
     return lines.back();
   };
@@ -114,8 +132,10 @@ void plotExposure(const Exposure& exposure, render::ImageSize size, const std::s
 
     PlotLine way{"platform", {}, kTogether}, ground{"ground", {}, render::kPlotSurface};
     double lowest_m = HUGE_VAL, highest_m = -HUGE_VAL;
+    addPoints(
+        exposure, [](const ExposureRow& row) { return row.value; },
+        [](const ExposureRow& row) { return row.height_msl_m; }, way);
     for (const ExposureRow& row : exposure.rows) {
-      way.points.push_back({row.time_s, row.height_msl_m, row.value >= exposure.request.threshold});
       ground.points.push_back({row.time_s, row.height_msl_m - row.height_agl_m, false});
       highest_m = std::max(highest_m, row.height_msl_m);
       lowest_m = std::min({lowest_m, row.height_msl_m, ground.points.back().y});

@@ -50,10 +50,26 @@ CPLErr setLabels(GDALRasterBandH band, const std::vector<std::string>& labels) {
   return std::max(failed, GDALSetRasterCategoryNames(band, names.data()));
 }
 
+/// EPSG code of a raster's coordinate system; empty: none.
+std::string codeOf(GDALDatasetH raster) {
+  const OGRSpatialReferenceH reference = GDALGetSpatialRef(raster);
+  const char* const code = reference == nullptr ? nullptr : OSRGetAuthorityCode(reference, nullptr);
+  return code == nullptr ? "" : code;
+}
+
+/// True if the coordinate system was written: the driver leaves it out if the database of PROJ cannot be
+/// read.
+bool hasCodeOf(GDALDatasetH raster, const std::filesystem::path& file) {
+  static const char* const kDrivers[] = {"GTiff", nullptr};
+  const gdal::Dataset written(
+      GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_INTERNAL, kDrivers, nullptr, nullptr));
+  return written != nullptr && codeOf(written.get()) == codeOf(raster);
+}
+
 }  // namespace
 
 void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const Map& map,
-                  const std::vector<std::pair<std::string, std::string>>& metadata) {
+                  const std::vector<std::pair<std::string, std::string>>& metadata, Replaces replaces) {
   const bool is_index = isWhole(map.kind);
   GDALDriverH cog = driverOf("COG");
   const scenario::GdalMessages messages;
@@ -92,7 +108,8 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
                          grid.width, grid.height, GDT_Float32, 0, 0));
   }
 
-  UnfinishedFile unfinished(file);
+  requireOwnBeside(file);
+  UnfinishedFile unfinished(file, replaces);
   // The COG driver writes overviews next to the output.
   const char* const options[] = {
       "COMPRESS=DEFLATE", is_index ? "PREDICTOR=NO" : "PREDICTOR=YES", "OVERVIEWS=AUTO",
@@ -104,6 +121,8 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
     is_complete = copy != nullptr;
   }
   if (!is_complete || messages.hasFailure()) failWriting(messages, file);
+  if (!hasCodeOf(dataset.get(), unfinished.temporary()))
+    throw Error(ErrorCode::other, file.string() + ": its coordinate system cannot be written");
   unfinished.publish(kAuxiliary);
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/files/own_file.h"
 #include "emscape/study/maps/map.h"
 
 namespace emscape::study {
@@ -16,6 +17,7 @@ namespace emscape::study {
 /// @param metadata  additional items, EMSCAPE_NAME and value
 /// @throws Error (other) that names the file and GDAL's reason
 void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const Map& map,
-                  const std::vector<std::pair<std::string, std::string>>& metadata);
+                  const std::vector<std::pair<std::string, std::string>>& metadata,
+                  Replaces replaces = Replaces::own);
 
 }  // namespace emscape::study

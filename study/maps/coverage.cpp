@@ -59,6 +59,18 @@ std::optional<std::string> scanWarning(const scenario::Scenario& at_targets,
   return unlit->warning;
 }
 
+/// Warning for products over time if emitters switch on and off between the times.
+std::optional<std::string> activityWarning(const scenario::Scenario& at_targets,
+                                           const std::vector<CoverageRequest>& requests) {
+  const bool is_over_time =
+      std::any_of(requests.begin(), requests.end(), [](const CoverageRequest& r) { return isOverTime(r); });
+  if (!is_over_time || at_targets.output.interval.kind != scenario::IntervalKind::instant)
+    return std::nullopt;
+  std::string text = scenario::missedActivityText(at_targets, requests.front().times_s);
+  if (text.empty()) return std::nullopt;
+  return text;
+}
+
 /// Warning for a projection in which pixels have another size than on the ground: Mercator's far from the
 /// equator, a zone of UTM far from its meridian.
 std::optional<std::string> scaleWarning(const MapGrid& grid) {
@@ -351,6 +363,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     for (SurfaceMaps& maps : of.maps) maps.begin(scenarios.size());
   }
   std::vector<std::set<std::string>> of_fields(scenarios.size());  // warnings
+  std::vector<emfield::SteepGrounds> steep(scenarios.size());
   for (const double time_s : times_s) {
     for (std::size_t s = 0; s < scenarios.size(); ++s) {
       const auto takeOf = [&](std::size_t r) {
@@ -360,7 +373,9 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
         tell(0);
         const SurfaceValues values = of.field.at(at_targets[s], terrain, time_s);
         ++done;
-        addOnce(of_fields[s], of.field.warnings());
+        emfield::SteepGrounds now;
+        addOnce(of_fields[s], of.field.warnings(now));
+        emfield::keepSteepest(steep[s], now);
         for (std::size_t r = 0; r < requests.size(); ++r) {
           of.maps[r].addTime(s, at_targets[s], values, time_s, takeOf(r), tell);
           done += static_cast<double>(of.maps[r].causeMaps());
@@ -394,8 +409,9 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     if (!outside.empty()) warnings[s].push_back(outside);
     for (std::string& warning : inactiveWarnings(at_targets[s], terrain, requests.front().quantity, times_s))
       warnings[s].push_back(std::move(warning));
-    for (const auto& warning : {scanWarning(*at_targets[s], requests), impl_->scale_warning,
-                                heightWarning(requests), burnThroughWarning(requests)})
+    for (const auto& warning :
+         {scanWarning(*at_targets[s], requests), activityWarning(*at_targets[s], requests),
+          impl_->scale_warning, heightWarning(requests), burnThroughWarning(requests)})
       if (warning) warnings[s].push_back(*warning);
     addLowHeights(*at_targets[s], requests, warnings[s]);
     for (std::string& warning : instrumentedRangeWarnings(at_targets[s], terrain, requests.front().quantity,
@@ -405,6 +421,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
       for (std::size_t r = 0; r < requests.size(); ++r)
         of.maps[r].finish(s, [&](CoverageMap map) { take(s, r, std::move(map)); });
     }
+    addOnce(of_fields[s], emfield::steepGroundWarnings(steep[s]));
     warnings[s].insert(warnings[s].end(), of_fields[s].begin(), of_fields[s].end());
   }
   if (progress) progress("maps", 1);

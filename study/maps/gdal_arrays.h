@@ -29,8 +29,10 @@ gdal::Array addArray(const gdal::Group& group, const std::string& name, const Ar
 bool setText(const gdal::Group& group, const char* name, const std::string& text);
 bool setText(const gdal::Array& array, const char* name, const std::string& text);
 
+/// Row of blocks by row of blocks, with checkpoints.
 /// @param start,count  of the written part, along the array's dimensions
 /// @return false if it cannot be written
+/// @throws Stopped
 bool writeArray(const gdal::Array& array, const std::vector<GUInt64>& start,
                 const std::vector<std::size_t>& count, const gdal::ValueType& type, const void* values);
 

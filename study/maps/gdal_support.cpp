@@ -7,6 +7,7 @@
 #include <cerrno>
 
 #include "base/files/descriptor.h"
+#include "base/files/own_file.h"
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
 #include "emscape/base/work.h"
@@ -56,6 +57,11 @@ void failWriting(const scenario::GdalMessages& messages, const std::filesystem::
 
 int goesOn(double /*done*/, const char* /*message*/, void* /*data*/) {
   return currentWork() == nullptr || !currentWork()->isStopped() ? TRUE : FALSE;
+}
+
+void requireOwnBeside(const std::filesystem::path& file) {
+  for (const char* const ending : {kAuxiliary, ".ovr", ".msk", "-wal", "-journal", "-shm"})
+    requireOwn(file.string() + ending);
 }
 
 gdal::Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file) {

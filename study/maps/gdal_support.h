@@ -21,6 +21,10 @@ int goesOn(double done, const char* message, void* data);
 
 /// Ending of the file in which GDAL stores what a format does not support.
 constexpr const char* kAuxiliary = ".aux.xml";
+/// For files that GDAL and SQLite read with a raster or a database, as if they were its own: statistics and
+/// labels, overviews, masks and journals.
+/// @throws Error (usage) that names one that emscape did not write
+void requireOwnBeside(const std::filesystem::path& file);
 
 /// A raster of one band in memory, with a grid's pixels and georeference.
 /// @throws Error (other) naming the destination file

@@ -83,8 +83,8 @@ const std::vector<ProductInfo>& productTable() {
        "cause",
        "why not covered",
        "",
-       "what decides that the threshold is not reached, by the path of the emitter with the largest value; "
-       "each such pixel takes the time of a `profile`",
+       "what decides that the threshold is not reached, by the path of the emitter that is nearest to "
+       "reaching it; each such pixel takes the time of a `profile`",
        false,
        true,
        true,

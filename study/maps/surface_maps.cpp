@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/large_array.h"
 #include "base/text/quantity_text.h"
 #include "emfield/channels/categories.h"
 #include "emfield/channels/products.h"
@@ -134,6 +135,25 @@ CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& 
   return map;
 }
 
+std::vector<CoverageMap> outlinesOf(const CoverageRequest& request) {
+  const std::vector<std::optional<MapHeight>> heights(request.heights.begin(), request.heights.end());
+  const std::vector<std::optional<double>> times_s(request.times_s.begin(), request.times_s.end());
+  std::vector<CoverageMap> outlines;
+  for (const Product product : request.products) {
+    const ProductInfo& of = info(product);
+    for (const auto& height : of.at_heights ? heights : std::vector<std::optional<MapHeight>>(1)) {
+      for (const auto& time_s : of.over_time ? std::vector<std::optional<double>>(1) : times_s) {
+        CoverageMap& map = outlines.emplace_back();
+        map.product = product;
+        map.name = of.name;
+        map.height = height;
+        map.time_s = time_s;
+      }
+    }
+  }
+  return outlines;
+}
+
 void setValues(CoverageMap& map, const MapGrid& grid, std::vector<float> values) {
   map.values = std::move(values);
   const MapSummary summary = summaryOf(grid, map);
@@ -147,7 +167,7 @@ SurfaceField::SurfaceField(const MapGrid& grid, const std::vector<CoverageReques
   auto surface = std::make_shared<emfield::Surface>();
   surface->width = grid.width;
   surface->height = grid.height;
-  surface->positions = grid.positions;
+  copyInParts(grid.positions, surface->positions);
   surface->reference = reference;
   for (const CoverageRequest& request : requests) {
     for (const MapHeight& height : request.heights) {

@@ -27,6 +27,8 @@ bool isOverTime(const CoverageRequest& request);
 /// @param height  none: for all heights
 CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& request, Product product,
                      const std::optional<MapHeight>& height);
+/// The maps that a request makes, with what their file names are made of: product, height and time.
+std::vector<CoverageMap> outlinesOf(const CoverageRequest& request);
 /// Sets the values of a map, NaN where there is none, and its areas.
 void setValues(CoverageMap& map, const MapGrid& grid, std::vector<float> values);
 
@@ -62,7 +64,8 @@ class SurfaceField {
   SurfaceValues at(const std::shared_ptr<const scenario::Scenario>& scenario,
                    const scenario::TerrainPtr& terrain, double time_s);
   /// Of the last time.
-  std::vector<std::string> warnings() const { return solver_->warnings(); }
+  /// @param steep  receives what is in place of the warnings of steep ground
+  std::vector<std::string> warnings(emfield::SteepGrounds& steep) const { return solver_->warnings(&steep); }
 
  private:
   emfield::FieldOptions options_;

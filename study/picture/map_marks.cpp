@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "emscape/base/error.h"
-#include "emscape/base/log.h"
-#include "scenario/file/far_outside.h"
 #include "scenario/map/places.h"
 #include "study/picture/map_plane.h"
 
@@ -54,34 +51,6 @@ playback::MarkedPlane markedPlane(const MapGrid& grid) {
   return marked;
 }
 
-namespace {
-
-/// Told of a file without a place in the map; empty: it has one.
-std::string placesOutsideText(const std::string& file, const std::vector<scenario::Place>& places,
-                              const playback::MarkedPlane& map, const scenario::Region& region) {
-  std::string mistake;
-  for (const scenario::Place& place : places) {
-    Vec3d lowest{HUGE_VAL, HUGE_VAL, 0}, highest{-HUGE_VAL, -HUGE_VAL, 0};
-    for (const std::vector<GeodeticPosition>& part : place.parts) {
-      for (const Vec3d& at : map.at(part)) {
-        lowest = {std::min(lowest.x, at.x), std::min(lowest.y, at.y), 0};
-        highest = {std::max(highest.x, at.x), std::max(highest.y, at.y), 0};
-      }
-      for (const GeodeticPosition& position : part) {
-        if (mistake.empty())
-          mistake = scenario::mistakenPlaceText(region, position.latitude_deg, position.longitude_deg);
-      }
-    }
-    if (lowest.x <= map.upper_m.x && highest.x >= map.lower_m.x && lowest.y <= map.upper_m.y &&
-        highest.y >= map.lower_m.y)
-      return "";
-  }
-  return fmt::format("{}: none of its places is in the map, so that none is drawn{}", file,
-                     mistake.empty() ? "" : "; " + mistake);
-}
-
-}  // namespace
-
 MapMarks::MapMarks(const MapStudy& study) : study_(study) {
   checkRings(study);
   if (study.view.places.empty()) return;
@@ -89,8 +58,7 @@ MapMarks::MapMarks(const MapStudy& study) : study_(study) {
   playback::GroundMarks marks(map);
   for (const std::string& file : study.view.places) {
     const std::vector<scenario::Place> places = scenario::readPlaces(file);
-    const std::string outside = placesOutsideText(file, places, map, study.scenarios.front()->region);
-    if (!outside.empty()) logWarning(outside);
+    playback::tellPlacesOutside(file, places, map, &study.scenarios.front()->region);
     marks.addPlaces(places);
   }
   place_lines_ = std::move(marks.lines);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
 #include "emscape/playback/frames/scene.h"
 #include "render/annotate/hatching.h"
 #include "render/annotate/label_placement.h"
@@ -409,6 +410,7 @@ void addCoast(const MapGrid& grid, const MapGrid& squares, MapPictureOptions& op
 }
 
 render::Image8 drawMap(const MapGrid& grid, const Map& map, const MapPictureOptions& options) {
+  const WorkPart part("drawing the map", 0, 0);
   return MapPicture(grid, map, options).draw();
 }
 

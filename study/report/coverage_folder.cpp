@@ -14,6 +14,7 @@
 #include "base/files/json_reading.h"
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "scenario/terrain/raster_access.h"
 #include "study/maps/gdal_support.h"
@@ -144,6 +145,7 @@ std::shared_ptr<const MapGrid> gridOf(const fs::path& file, const std::string& c
 }  // namespace
 
 CoverageFolder openCoverageFolder(const fs::path& path) {
+  const WorkPart part("reading " + path.string(), 0, 0);
   CoverageFolder folder;
   folder.path = path;
   const fs::path report = path / "report.json", study = path / "study.json";

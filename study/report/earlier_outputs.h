@@ -1,4 +1,4 @@
-/// Files that runs of emscape wrote into a folder of maps: what they may replace and remove.
+/// Maps that an earlier run wrote into a folder.
 #pragma once
 
 #include <filesystem>
@@ -8,35 +8,13 @@
 
 namespace emscape::study {
 
-/// The outputs that a folder's study.json lists, and those of a run that did not reach its end:
-/// maps/.unfinished lists them, a name a line, until they are written again or gone. None if these files are
-/// missing or have another form.
-class EarlierOutputs {
- public:
-  explicit EarlierOutputs(const std::filesystem::path& folder);
-  /// Removes the list of an unfinished run that left no output.
-  ~EarlierOutputs();
-  EarlierOutputs(const EarlierOutputs&) = delete;
-  EarlierOutputs& operator=(const EarlierOutputs&) = delete;
+/// The outputs that a folder's study.json lists, as digestJson() makes them; none if it is missing, is of
+/// another subcommand of `emscape`, or has another form.
+nlohmann::ordered_json outputsOf(const std::filesystem::path& folder, const std::string& command);
 
-  /// Before a map is written.
-  /// @param name  relative to the folder
-  /// @throws Error (usage) that names the file, if there is one that no run wrote; a GIS program's .aux.xml
-  /// beside a map of ours counts as ours
-  void add(const std::string& name);
-  /// After study.json was written: removes those in the folder's maps/ that were not written again and still
-  /// have the listed size and checksum.
-  /// @param written  relative to the folder
-  void finish(const std::set<std::string>& written);
-
- private:
-  bool isOwn(const std::string& name) const;
-  void list() const;
-
-  std::filesystem::path folder_;
-  nlohmann::ordered_json outputs_;    ///< as digestJson() makes them
-  std::set<std::string> own_;         ///< names of all, relative to the folder
-  std::set<std::string> unfinished_;  ///< of a run that did not reach its end, and of this one
-};
+/// Removes those in the folder's maps/ that were not written again and still have the listed size and
+/// checksum. @param written  names relative to the folder
+void removeEarlierMaps(const std::filesystem::path& folder, const nlohmann::ordered_json& outputs,
+                       const std::set<std::string>& written);
 
 }  // namespace emscape::study

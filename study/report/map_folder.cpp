@@ -8,6 +8,7 @@
 
 #include "base/files/folder.h"
 #include "base/files/folder_lock.h"
+#include "base/files/own_file.h"
 #include "base/files/unfinished_file.h"
 #include "base/files/whole_file.h"
 #include "base/text/quantity_text.h"
@@ -28,6 +29,7 @@
 #include "study/files/map_collection.h"
 #include "study/files/map_metadata.h"
 #include "study/files/netcdf.h"
+#include "study/maps/gdal_support.h"
 #include "study/picture/map_marks.h"
 #include "study/picture/map_picture.h"
 #include "study/report/coverage_summary.h"
@@ -109,8 +111,9 @@ struct MapFolder::State {
   std::filesystem::path folder;
   MadeFolder maps_folder;
   FolderLock lock;
-  EarlierOutputs earlier_outputs;
+  const nlohmann::ordered_json earlier_outputs;
   MapStudy study;
+  const nlohmann::ordered_json terrain;  ///< its files, as they are before the maps
   bool has_cog = false, has_png = false;
   MapPictureOptions background;  ///< of all pictures: what is below the colours
   std::optional<MapMarks> marks;
@@ -123,8 +126,9 @@ struct MapFolder::State {
       : folder(path),
         maps_folder(path, "maps"),
         lock(path, ".maps.lock"),
-        earlier_outputs(path),
-        study(std::move(of)) {
+        earlier_outputs(outputsOf(path, of.command)),
+        study(std::move(of)),
+        terrain(terrainJsonOf(study)) {
     for (const std::filesystem::path& written : {path, path / "maps"}) removeAbandonedFiles(written);
     marks.emplace(study);
     setBackground();
@@ -173,7 +177,6 @@ struct MapFolder::State {
     const bool is_there = std::any_of(collections.begin(), collections.end(),
                                       [&](const Collection& other) { return other.file == file; });
     if (is_there) return;
-    earlier_outputs.add(file);
     collections.push_back({file, format->make(folder / file, study)});
   }
 
@@ -232,8 +235,8 @@ struct MapFolder::State {
     report.facts(facts);
   }
 
-  void writeHtml(const std::vector<std::string>& files, const std::vector<std::string>& warnings,
-                 const AddSections& addSections) const {
+  std::string htmlOf(const std::vector<std::string>& files, const std::vector<std::string>& warnings,
+                     const AddSections& addSections) const {
     const MapGrid& grid = *study.grid;
     const scenario::QuantityInfo& quantity = scenario::info(study.quantity);
     const std::string threshold =
@@ -265,7 +268,7 @@ struct MapFolder::State {
     ReportTable table{{"file"}, {}, "Relative to this report's folder."};
     for (const std::string& file : files) table.rows.push_back({file});
     report.table(table);
-    report.write(folder / "report.html");
+    return report.html();
   }
 };
 
@@ -277,13 +280,25 @@ MapFolder::MapFolder(const std::filesystem::path& folder, MapStudy study,
 
 MapFolder::~MapFolder() = default;
 
+void MapFolder::requireReplaceable(const std::vector<std::string>& names) const {
+  std::vector<std::string> files;
+  for (const std::string& name : names) {
+    if (state_->has_png) requireOwn(state_->folder / "maps" / (name + ".png"));
+    if (state_->has_cog) files.push_back("maps/" + name + ".tif");
+  }
+  for (const State::Collection& collection : state_->collections) files.push_back(collection.file);
+  for (const std::string& file : files) {
+    requireOwn(state_->folder / file);
+    requireOwnBeside(state_->folder / file);
+  }
+}
+
 const MapRecord& MapFolder::add(const Map& map) {
   State& state = *state_;
   MapRecord record;
   record.summary = summaryOf(*state.study.grid, map);
   const std::string name = "maps/" + fileNameOf(map);
   if (state.has_cog) {
-    for (const char* ending : {".tif.aux.xml", ".tif"}) state.earlier_outputs.add(name + ending);
     record.files.push_back(name + ".tif");
     writeGeoTiff(state.folder / record.files.back(), *state.study.grid, map, metadataOf(state.study, map));
   }
@@ -292,7 +307,6 @@ const MapRecord& MapFolder::add(const Map& map) {
     render::Image8 picture = state.pictureOf(map);
     if (state.has_png) {
       record.files.push_back(name + ".png");
-      state.earlier_outputs.add(record.files.back());
       const std::string png = render::withPngComment(render::encodePng(picture), state.changes());
       writeWhole(state.folder / record.files.back(), [&](std::ostream& out) { out << png; });
     }
@@ -315,7 +329,7 @@ void MapFolder::finish(const std::vector<std::string>& warnings, const std::stri
   for (const MapRecord& record : state.records) {
     for (const std::string& file : record.files) {
       files.push_back(file);
-      const std::string labels = file + ".aux.xml";
+      const std::string labels = file + kAuxiliary;
       if (std::filesystem::exists(state.folder / labels)) files.push_back(labels);
     }
   }
@@ -324,12 +338,13 @@ void MapFolder::finish(const std::vector<std::string>& warnings, const std::stri
     files.push_back(collection.file);
     for_all.push_back(collection.file);
   }
-  state.writeHtml(files, warnings, addSections);
+  const std::string html = state.htmlOf(files, warnings, addSections);
   state.report_json = reportJsonOf(state.study, state.records, for_all, warnings, more);
-  const std::string inputs = studyJsonOf(state.study, state.folder, files);
+  const std::string inputs = studyJsonOf(state.study, state.terrain, state.folder, files);
   writeWhole({{state.folder / "study.json", [&](std::ostream& out) { out << inputs; }},
-              {state.folder / "report.json", [&](std::ostream& out) { out << state.report_json; }}});
-  state.earlier_outputs.finish({files.begin(), files.end()});
+              {state.folder / "report.json", [&](std::ostream& out) { out << state.report_json; }},
+              {state.folder / "report.html", [&](std::ostream& out) { out << html; }}});
+  removeEarlierMaps(state.folder, state.earlier_outputs, {files.begin(), files.end()});
 }
 
 const std::vector<MapRecord>& MapFolder::records() const {

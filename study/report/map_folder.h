@@ -41,6 +41,9 @@ class MapFolder {
   MapFolder(const MapFolder&) = delete;
   MapFolder& operator=(const MapFolder&) = delete;
 
+  /// Before the first map. @param names  fileNameOf() all maps
+  /// @throws Error (usage) that names a file of theirs, or of all maps, that is not to be replaced
+  void requireReplaceable(const std::vector<std::string>& names) const;
   /// Writes the files of one map, and adds it to the files that contain all maps.
   /// @throws Error (other) naming the file
   const MapRecord& add(const Map& map);

@@ -46,7 +46,7 @@ Json toJson(const MapRecord& record) {
   json["max"] = number(record.summary.max);
   json["known_area_km2"] = record.summary.known_area_m2 / 1e6;
   json["unknown_area_km2"] = record.summary.unknown_area_m2 / 1e6;
-  if (map.area_class >= 0 || map.unreached_area_m2) {
+  if (map.area_class > 0 || map.unreached_area_m2) {
     json["area_km2"] = record.summary.class_area_m2 / 1e6;
     json["share_of_known"] = number(record.summary.class_area_m2 / record.summary.known_area_m2);
   }
@@ -172,7 +172,14 @@ Json digestJson(const std::string& name, const std::filesystem::path& file) {
   return {{"file", name}, {"bytes", digest.bytes}, {"crc32", fmt::format("{:08x}", digest.crc32)}};
 }
 
-std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& folder,
+Json terrainJsonOf(const MapStudy& study) {
+  Json terrain = Json::array();
+  for (const std::string& file : terrainFilesOf(study))
+    terrain.push_back(digestJson(std::filesystem::path(file).filename().string(), file));
+  return terrain;
+}
+
+std::string studyJsonOf(const MapStudy& study, const Json& terrain, const std::filesystem::path& folder,
                         const std::vector<std::string>& files) {
   Json json{{"emscape", EMSCAPE_VERSION}, {"command", study.command}};
   json["scenarios"] = Json::array();
@@ -184,10 +191,7 @@ std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& fold
                                  {"edits", editsOf(*scenario)},
                                  {"text", textOf(*scenario)}});
   }
-  json["terrain"] = Json::array();
-  for (const std::string& file : terrainFilesOf(study)) {
-    json["terrain"].push_back(digestJson(std::filesystem::path(file).filename().string(), file));
-  }
+  json["terrain"] = terrain;
   json["quantity"] = scenario::info(study.quantity).name;
   json["threshold"] = study.threshold;
   json["times_s"] = study.times_s;

@@ -16,10 +16,13 @@ std::string reportJsonOf(const MapStudy& study, const std::vector<MapRecord>& re
                          const std::vector<std::string>& files, const std::vector<std::string>& warnings,
                          const std::string& more);
 
+/// The terrain files in study.json: a list of digestJson().
+nlohmann::ordered_json terrainJsonOf(const MapStudy& study);
 /// study.json: inputs with their hashes, models with their accuracy, outputs.
+/// @param terrain  terrainJsonOf(), from before the maps
 /// @param folder  of the outputs  @param files  relative to it
-std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& folder,
-                        const std::vector<std::string>& files);
+std::string studyJsonOf(const MapStudy& study, const nlohmann::ordered_json& terrain,
+                        const std::filesystem::path& folder, const std::vector<std::string>& files);
 
 /// A file in study.json: {"file", "bytes", "crc32"}. @throws Error (bad_input) naming the file
 nlohmann::ordered_json digestJson(const std::string& name, const std::filesystem::path& file);

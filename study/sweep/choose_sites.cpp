@@ -5,6 +5,8 @@
 namespace emscape::study {
 namespace {
 
+constexpr double kMinGain = 1e-9;  ///< relative: an exchange must add more than rounding
+
 /// Number of sites that cover each pixel, and the gain of another site.
 class Cover {
  public:
@@ -47,7 +49,6 @@ class Cover {
 
 std::vector<std::size_t> chooseSites(const std::vector<std::vector<std::uint8_t>>& pixels,
                                      const std::vector<float>& weights, std::size_t count) {
-  constexpr double kMinGain = 1e-9;  // relative: an exchange must add more than rounding
   Cover cover(pixels, weights);
   std::vector<std::size_t> chosen;
   double gain = 0;
@@ -70,6 +71,23 @@ std::vector<std::size_t> chooseSites(const std::vector<std::vector<std::uint8_t>
   }
   std::sort(chosen.begin(), chosen.end());
   return chosen;
+}
+
+std::size_t equalSites(const std::vector<std::vector<std::uint8_t>>& pixels,
+                       const std::vector<float>& weights, const std::vector<std::size_t>& chosen) {
+  Cover cover(pixels, weights);
+  for (const std::size_t site : chosen) cover.add(site, 1);
+  std::vector<bool> is_equal(pixels.size());
+  for (const std::size_t out : chosen) {
+    cover.add(out, -1);
+    const double own = cover.gain(out);
+    for (std::size_t site = 0; site < pixels.size(); ++site) {
+      const bool is_chosen = std::find(chosen.begin(), chosen.end(), site) != chosen.end();
+      if (!is_chosen && cover.gain(site) >= own * (1 - kMinGain)) is_equal[site] = true;
+    }
+    cover.add(out, 1);
+  }
+  return static_cast<std::size_t>(std::count(is_equal.begin(), is_equal.end(), true));
 }
 
 double coveredWeight(const std::vector<std::vector<std::uint8_t>>& pixels, const std::vector<float>& weights,

@@ -16,6 +16,10 @@ namespace emscape::study {
 std::vector<std::size_t> chooseSites(const std::vector<std::vector<std::uint8_t>>& pixels,
                                      const std::vector<float>& weights, std::size_t count);
 
+/// Number of other sites with one of which in place of a chosen one as much is covered.
+std::size_t equalSites(const std::vector<std::vector<std::uint8_t>>& pixels,
+                       const std::vector<float>& weights, const std::vector<std::size_t>& chosen);
+
 /// The weight of the pixels that any of the sites covers.
 double coveredWeight(const std::vector<std::vector<std::uint8_t>>& pixels, const std::vector<float>& weights,
                      const std::vector<std::size_t>& sites);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/large_array.h"
 #include "emfield/columns/station.h"
 #include "emfield/excess/clutter_text.h"
 #include "emscape/base/error.h"
@@ -150,6 +151,7 @@ class WarningsOfCuts {
 struct Solved {
   std::vector<std::vector<float>> values, ground_msl_m;
   WarningsOfCuts warnings;
+  emfield::SteepGrounds steep;
 };
 
 class Solver {
@@ -205,12 +207,13 @@ class Solver {
     const std::size_t channel = *channelOf(emitter_, solver.channels());
     solver.update(snapshot);
     const auto volume = solver.volumes()[channel].host();
-    solved.warnings.add(request_.azimuths_deg[begin_cut], solver.warnings());
+    solved.warnings.add(request_.azimuths_deg[begin_cut], solver.warnings(&solved.steep));
     const std::size_t ranges = static_cast<std::size_t>(request_.ranges);
     const std::size_t positions = ranges * (end_cut - begin_cut);
     for (std::size_t cut = 0; cut < end_cut - begin_cut; ++cut) {
       std::vector<float> values;
       for (std::size_t k = 0; k < options.surface->heights_m.size(); ++k) {
+        checkpoint();
         for (std::size_t p = cut * ranges; p < (cut + 1) * ranges; ++p) {
           const bool is_valid = volume->first_valid_k.empty() || k >= volume->first_valid_k[p];
           values.push_back(is_valid ? volume->values[k * positions + p] : NAN);
@@ -235,12 +238,15 @@ class Solver {
 
 std::vector<VerticalCut::Line> contoursOf(const std::vector<float>& values, const VerticalDiagram& diagram) {
   const VerticalRequest& request = diagram.request;
-  std::vector<float> levels = values;
+  std::vector<float> levels;
+  copyInParts(values, levels);
   auto level = static_cast<float>(request.threshold), floor = static_cast<float>(diagram.floor);
   if (request.quantity == Quantity::detection_probability) {
     floor = logOdds(0) - 1;
-    std::transform(values.begin(), values.end(), levels.begin(),
-                   [&](float probability) { return probability == 0 ? floor : logOdds(probability); });
+    for (std::size_t n = 0; n < levels.size(); ++n) {
+      if (n % static_cast<std::size_t>(request.ranges) == 0) checkpoint();
+      levels[n] = values[n] == 0 ? floor : logOdds(values[n]);
+    }
     level = logOdds(level);
   }
   const double range_step = diagram.ranges_m[1] - diagram.ranges_m[0];
@@ -415,6 +421,8 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
   Solved solved = solver.solve(snapshot, below);
   diagram.warnings = warningsOf(*scenario);
   for (std::string& warning : solved.warnings.texts()) diagram.warnings.push_back(std::move(warning));
+  for (std::string& warning : emfield::steepGroundWarnings(solved.steep))
+    diagram.warnings.push_back(std::move(warning));
   if (const std::string outside = scenario::outsideClockText({request.time_s}, scenario->clock);
       !outside.empty())
     diagram.warnings.push_back(outside);

@@ -14,6 +14,9 @@ class VerticalColors {
   explicit VerticalColors(const VerticalDiagram& diagram);
 
   const render::TransferFunction& function() const { return function_; }
+  /// True if values are beyond an end of the scale.
+  bool hasLower() const { return has_lower_; }
+  bool hasHigher() const { return has_higher_; }
   /// The shade of a value; -1: blank, without a field.
   int shadeOf(float value) const;
   render::Ink inkOf(int shade) const;
@@ -24,6 +27,7 @@ class VerticalColors {
   bool is_part_;  ///< a probability
   double floor_;
   double low_ = 0, high_ = 1;
+  bool has_lower_ = false, has_higher_ = false;
   render::TransferFunction function_;
 };
 

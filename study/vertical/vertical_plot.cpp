@@ -6,6 +6,7 @@
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/study/vertical/vertical.h"
+#include "render/annotate/legend_ends.h"
 #include "render/annotate/overlay_parts.h"
 #include "render/annotate/plot.h"
 #include "study/vertical/vertical_colors.h"
@@ -68,7 +69,7 @@ class VerticalPlot {
       drawCut(cut, frame);
       frame.y += panel_height;
     }
-    render::drawLegend(canvas_, style_, legend_);
+    render::drawLegend(canvas_, style_, legend_, {colors_.hasLower(), colors_.hasHigher()});
     drawHeader(frame);
   }
 

@@ -51,7 +51,7 @@ std::string deviceName() {
 
 json benchCells(const char* rasterizer) {
   return bench({"cells", shippedScenario("quick.yaml"), "--mesh", "terrain:4", "--size", "80x60", "--set",
-                "region.dims=[9, 8, 4]", "--frames", "1", "--rasterizer", rasterizer});
+                "region.dims=[9, 8, 10]", "--frames", "1", "--rasterizer", rasterizer});
 }
 
 TEST(Bench, CellsAreProjectedByTilesInBothOrdersAndMarched) {

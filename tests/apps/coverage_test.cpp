@@ -58,6 +58,16 @@ TEST(Coverage, WritesMapsPicturesAndAReport) {
   EXPECT_EQ(study["outputs"].size(), 12u);
 }
 
+TEST(Coverage, PrintsTheAreasOfTheCausesAndNotThatOfWhatIsCovered) {
+  const TemporaryFolder folder;
+  const std::string out = runWell({"coverage", quick(), "-o", folder / "out", "--cell", "2000", "--quantity",
+                                   "detection_probability", "--heights", "agl:150", "--products",
+                                   "covered,cause", "--format", "cog"})
+                              .out;
+  EXPECT_THAT(out, HasSubstr(" 24.0 of 400.1 km2 known, 6.0 %"));
+  EXPECT_THAT(out, HasSubstr(" pointing 280.1, noise 96.0 of 400.1 km2 known "));
+}
+
 TEST(Coverage, SLOW_TwoRunsWriteTheSameBytes) {
   const TemporaryFolder first, second;
   for (const TemporaryFolder* folder : {&first, &second}) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 
 #include "tests/apps/program.h"
 #include "tests/support/listener.h"
@@ -70,10 +71,58 @@ TEST(ForeignFolder, FilesOfTheUserThatAreNamedLikeMapsAreNamedAndStay) {
     Arguments arguments = coverage;
     arguments.push_back(folder / "out");
     EXPECT_THAT(errorOfRun(arguments, 2),
-                AllOf(HasSubstr("out/maps/" + file + ": would be replaced"), HasSubstr("move")));
+                HasSubstr("out/maps/" + file + ": is a file that emscape did not write"));
     EXPECT_EQ(folder.files(), std::vector<std::string>{"out/maps/" + file});
     EXPECT_EQ(readFile(folder / ("out/maps/" + file)), "mine");
   }
+}
+
+TEST(ForeignFolder, SLOW_NoMapIsReplacedIfAnotherFileIsOfTheUser) {
+  const Arguments maps{"--cell", "4000",       "--heights",     "agl:100,200", "--times",
+                       "0",      "--products", "covered,count", "--format",    "cog,png,nc"};
+  const std::pair<Arguments, std::string> writers[] = {
+      {{"coverage", quick()}, "count_agl200m_t0s"},
+      {{"compare", quick(), "--set-b", "emitters.radar.power_w=1"}, "count_difference_agl200m_t0s"}};
+  for (const auto& [command, last] : writers) {
+    const TemporaryFolder folder;
+    Arguments arguments = command;
+    arguments.insert(arguments.end(), maps.begin(), maps.end());
+    arguments.insert(arguments.end(), {"-o", folder / "out", "--set", "emitters.radar.power_w=1000"});
+    runWell(arguments);
+    arguments.back() = "emitters.radar.power_w=10";
+    const auto contents = [&folder] {
+      std::map<std::string, std::string> all;
+      for (const std::string& file : folder.files()) all[file] = readFile(folder / file);
+      return all;
+    };
+    for (const std::string& name : {last + ".tif.aux.xml", last + ".tif.ovr", last + ".png",
+                                    command[0] + ".nc", command[0] + ".nc.aux.xml"}) {
+      const std::string file = "out/maps/" + name,
+                        own = fs::exists(folder / file) ? readFile(folder / file) : "";
+      folder.write(file, "mine");
+      const auto before = contents();
+      EXPECT_THAT(errorOfRun(arguments, 2), HasSubstr(name + ": is a file that emscape did not write"));
+      EXPECT_EQ(contents(), before);
+      if (own.empty())
+        fs::remove(folder / file);
+      else
+        folder.write(file, own);
+    }
+    runWell(arguments);
+  }
+}
+
+TEST(ForeignFolder, SLOW_MapsOfCoverageStayWhenCompareWritesIntoTheirFolder) {
+  const TemporaryFolder folder;
+  const Arguments maps{"--cell",     "4000",    "--heights", "agl:100", "--times", "0",
+                       "--products", "covered", "--format",  "cog",     "-o",      folder / "out"};
+  Arguments coverage{"coverage", quick()}, compare{"compare", quick(), "--set-b", "emitters.radar.power_w=1"};
+  for (Arguments* const arguments : {&coverage, &compare}) {
+    arguments->insert(arguments->end(), maps.begin(), maps.end());
+    runWell(*arguments);
+  }
+  for (const char* const name : {"covered_agl100m_t0s.tif", "covered_change_agl100m_t0s.tif"})
+    EXPECT_TRUE(fs::exists(folder / ("out/maps/" + std::string(name)))) << name;
 }
 
 TEST(ForeignFolder, MapsOfEarlierAndOfUnfinishedRunsAreReplaced) {
@@ -83,23 +132,97 @@ TEST(ForeignFolder, MapsOfEarlierAndOfUnfinishedRunsAreReplaced) {
                            "--format", "cog,nc",  "-o",     folder / "out"};
   runWell(coverage);
   const std::vector<std::string> files = folder.files();
-  folder.write("out/maps/covered_agl100m_t0s.tif.aux.xml", "<PAMDataset/>");  // of a GIS program
+  const std::string labels = folder / "out/maps/covered_agl100m_t0s.tif.aux.xml", own = readFile(labels);
+  writeFile(labels, "<PAMDataset/>");  // of a GIS program
+  EXPECT_THAT(errorOfRun(coverage, 2), HasSubstr("aux.xml: is a file that emscape did not write"));
+  EXPECT_EQ(readFile(labels), "<PAMDataset/>");
+  fs::rename(labels, folder / "mine.xml");
   runWell(coverage);
+  EXPECT_EQ(readFile(labels), own);
+  fs::remove(folder / "mine.xml");
   fs::remove(folder.path() / "out/study.json");  // as after a run that was killed
-  folder.write("out/maps/.unfinished",
-               "maps/covered_agl100m_t0s.tif\nmaps/covered_agl100m_t0s.tif.aux.xml\nmaps/coverage.nc\n");
   runWell(coverage);
   EXPECT_EQ(folder.files(), files);
-  // Beside a record of the run before that has another form.
-  folder.write("out/maps/.unfinished",
-               "maps/covered_agl100m_t0s.tif\nmaps/covered_agl100m_t0s.tif.aux.xml\nmaps/coverage.nc\n");
-  folder.write("out/study.json", R"({"emscape": "0"})");
-  runWell(coverage);
+}
+
+TEST(ForeignFolder, SLOW_OutputsThatTheUserChangedAreNamedAndStay) {
+  const TemporaryFolder folder;
+  writeStudy(folder);
+  const std::string links = shippedScenario("links.yaml"), out = folder / "out/";
+  const Arguments maps{"coverage",   quick(),   "--cell", "2000",     "--heights",
+                       "agl:100",    "--times", "0",      "--format", "gpkg,kmz,czml,geojson",
+                       "--products", "covered", "-o",     out};
+  const Arguments study{"study", folder / "study.yaml", "-o", out, "--slurm", out + "job.sh"};
+  const std::pair<Arguments, std::vector<std::string>> writers[] = {
+      {maps,
+       {"maps/coverage.gpkg", "maps/coverage.kmz", "maps/coverage.czml", "maps/coverage.geojson",
+        "report.html"}},
+      {study, {"job.sh", "job.sh.merge.sh"}},
+      {{"render", quick(), "--size", "64x48", "--times", "0:1:1", "-o", out + "frames", "-o", out + "a.mp4"},
+       {"frames/quick_0002.png", "a.mp4"}},
+      {{"vertical", quick(), "--emitter", "radar", "--azimuth", "30", "--grid", "20,20", "--areps", out, "-o",
+        out + "v.csv", "-o", out + "v.svg", "-o", out + "v.json"},
+       {"radar_APM_30.txt", "v.csv", "v.svg", "v.json"}},
+      {{"compare", quick(), "--set-b", "emitters.radar.power_w=1", "--cell", "4000", "--heights", "agl:100",
+        "--times", "0", "--format", "png", "-o", out, "--volume", out + "d.raw"},
+       {"d.raw", "d.raw.json"}}};
+  for (const auto& [arguments, names] : writers) {
+    fs::remove_all(out);
+    fs::create_directory(out);
+    runWell(arguments);
+    runWell(arguments);
+    for (const std::string& name : names) {
+      const std::string own = readFile(out + name), changed = own + "\nmine, not Emscape's";
+      ASSERT_NE(own, "") << name;
+      writeFile(out + name, changed);
+      EXPECT_THAT(errorOfRun(arguments, 2),
+                  AllOf(HasSubstr(name), HasSubstr("a file that emscape did not write")));
+      EXPECT_EQ(readFile(out + name), changed) << name;
+      writeFile(out + name, own);
+    }
+    runWell(arguments);
+  }
+}
+
+TEST(ForeignFolder, SLOW_FilesInInnerFoldersOfAStudyAreNamedAndStay) {
+  for (const std::string name : {"parts/part_00001.csv", "parts/part_00001.rows",
+                                 "variants/0/covered_agl300m_t0s.tif", "results.nc"}) {
+    const TemporaryFolder folder;
+    writeStudy(folder);
+    folder.write("out/" + name, "mine");
+    const Arguments study{"study", folder / "study.yaml", "--keep", "maps", "-o", folder / "out"};
+    EXPECT_THAT(errorOfRun(study, 2), AllOf(HasSubstr(name), HasSubstr("a file that emscape did not write")));
+    EXPECT_EQ(readFile(folder / ("out/" + name)), "mine");
+    fs::remove(folder / ("out/" + name));
+    Arguments again = study;
+    if (fs::exists(folder / "out/manifest.json")) again.push_back("--resume");
+    runWell(again);
+  }
+}
+
+TEST(ForeignFolder, AVolumeThatMentionsEmscapeIsOfTheUser) {
+  const TemporaryFolder folder;
+  const std::string volume = "<VTKFile type=\"ImageData\"><!-- compared with Emscape --></VTKFile>";
+  folder.write("d.vti", volume);
+  EXPECT_THAT(errorOfRun({"compare", quick(), "--set-b", "emitters.radar.power_w=1", "-o", folder / "out",
+                          "--volume", folder / "d.vti"},
+                         2),
+              HasSubstr("d.vti is a file that emscape did not write"));
+  EXPECT_EQ(readFile(folder / "d.vti"), volume);
+}
+
+TEST(ForeignFolder, PartsAndScriptsThatCannotBeAreToldBeforeAFileIsWritten) {
+  const TemporaryFolder folder;
+  writeStudy(folder);
+  const std::vector<std::string> files = folder.files();
+  EXPECT_THAT(
+      errorOfRun({"study", folder / "study.yaml", "-o", folder / "out", "--slurm", folder / "no/job.sh"}, 1),
+      HasSubstr("the folder " + (folder / "no") + " does not exist"));
   EXPECT_EQ(folder.files(), files);
-  folder.write("out/maps/value_agl200m_t0s.tif", "of the run that was killed");
-  folder.write("out/maps/.unfinished", "maps/value_agl200m_t0s.tif\n");
-  runWell(coverage);
-  EXPECT_EQ(readFile(folder / "out/maps/.unfinished"), "maps/value_agl200m_t0s.tif\n");
+  runWell({"study", folder / "study.yaml", "-o", folder / "out", "--chunks", "2"});
+  EXPECT_THAT(
+      errorOfRun({"study", folder / "study.yaml", "-o", folder / "out", "--chunks", "1", "--resume"}, 3),
+      HasSubstr("the folder's study has 2 parts, not 1"));
 }
 
 TEST(ForeignFolder, SLOW_LinksAreRefusedByNameAndNothingIsWrittenThroughThem) {

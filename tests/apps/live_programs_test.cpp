@@ -17,6 +17,7 @@ namespace emscape::test {
 namespace {
 
 using nlohmann::json;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::string freePort() {
@@ -80,6 +81,16 @@ TEST(LivePrograms, SLOW_GoOnRecordingWhileTheFieldCannotBeWritten) {
   EXPECT_EQ(run({"import", record, "-o", folder / "again.yaml"}).status, 0);
 }
 
+TEST(LivePrograms, SLOW_ForceReplacesAScenarioAndAFieldOfTheUser) {
+  const TemporaryFolder folder;
+  for (const char* const name : {"now/live.yaml", "now/live.vdb"}) folder.write(name, "mine");
+  Arguments live{"live", "--dis", freePort(), "--base", quick(), "--duration", "0.2", "-o", folder / "now"};
+  EXPECT_THAT(errorOfRun(live, 2), HasSubstr("exists; --force replaces it"));
+  live.emplace_back("--force");
+  EXPECT_EQ(run(live).status, 0);
+  EXPECT_EQ(run({"info", folder / "now/live.vdb"}).status, 0);
+}
+
 TEST(LivePrograms, CtrlCEndsThem) {
   const std::string port = freePort();
   const auto statusAtEnd = [](const Arguments& arguments) {
@@ -97,11 +108,25 @@ TEST(LivePrograms, FaultsNameOptionValueAndRemedy) {
   EXPECT_THAT(errorOfRun({"live", "--base", quick()}, 2), HasSubstr("--dis 127.0.0.1:3000"));
   EXPECT_THAT(errorOfRun({"live", "--dis", "3000"}, 2), HasSubstr("--base is needed"));
   EXPECT_THAT(errorOfRun({"live", "--dis", "99999", "--base", quick()}, 2), HasSubstr("the port 1..65535"));
-  EXPECT_THAT(errorOfRun({"live", "--dis", "203.0.113.1:3000", "--base", quick()}, 1),
+  const TemporaryFolder folder;
+  EXPECT_THAT(errorOfRun({"live", "--dis", "203.0.113.1:3000", "--base", quick(), "-o", folder / "out"}, 1),
               HasSubstr("this computer has no such address"));
+  const std::string recording = folder.write("out/mine.pcap", "mine");
+  EXPECT_THAT(
+      errorOfRun(
+          {"live", "--dis", freePort(), "--base", quick(), "-o", folder / "out", "--record", recording}, 2),
+      HasSubstr("mine.pcap exists"));
+  EXPECT_THAT(folder.files(), ElementsAre("out/mine.pcap"));
   EXPECT_THAT(errorOfRun({"live", "--acmi", freePort(), "--base", quick()}, 1),
               HasSubstr("no program listens there"));
   EXPECT_THAT(errorOfRun({"play", quick()}, 2), HasSubstr("--dis-out"));
+  const std::string interface = "--interface goes with a multicast group (224.0.0.0 to 239.255.255.255)";
+  EXPECT_THAT(errorOfRun({"live", "--dis", freePort(), "--base", quick(), "--interface", "127.0.0.1"}, 2),
+              HasSubstr(interface));
+  EXPECT_THAT(errorOfRun({"play", quick(), "--dis-out", freePort(), "--interface", "203.0.113.1"}, 2),
+              HasSubstr(interface));
+  EXPECT_THAT(errorOfRun({"play", quick(), "--acmi-server", freePort(), "--ttl", "3"}, 2),
+              HasSubstr("--ttl goes with a multicast group"));
   for (const char* const way :
        {"--dis-out", "--cot-out", "--acmi-server"}) {  // before a client is waited for
     EXPECT_THAT(errorOfRun({"play", shippedScenario("jamming.yaml"), way, freePort(), "--set",

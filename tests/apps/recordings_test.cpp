@@ -64,6 +64,12 @@ TEST(Recordings, FaultsNameFileValueAndRemedy) {
               HasSubstr("--times '5' is not BEGIN:END"));
   EXPECT_THAT(errorOfRun({"import", other, "-o", out, "--region", "95,0,10"}, 2),
               HasSubstr("--region '95,0,10' is not auto"));
+  for (const Arguments& without_folder :
+       {Arguments{"import", other, "-o", folder / "none/a.yaml"},
+        Arguments{"export", shippedScenario("quick.yaml"), "-o", folder / "none/a.acmi"}}) {
+    EXPECT_THAT(errorOfRun(without_folder, 1), HasSubstr("none"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "none"));
+  }
   EXPECT_THAT(errorOfRun({"export", shippedScenario("quick.yaml"), "-o", folder / "a.hla"}, 2),
               HasSubstr("it ends in .zip.acmi, .acmi, .pcap, .asi"));
   EXPECT_FALSE(std::filesystem::exists(out));
@@ -84,7 +90,7 @@ TEST(Recordings, FilesThatExistAreReplacedOnlyWithForce) {
     std::filesystem::create_directories(std::filesystem::path(file).parent_path());
     writeFile(file, "mine\n");
     EXPECT_THAT(errorOfRun(arguments, 2),
-                HasSubstr(file + " exists; --force replaces it, another --output keeps it"));
+                HasSubstr(file + " exists; --force replaces it, another name keeps it"));
     EXPECT_EQ(readFile(file), "mine\n");
     arguments.emplace_back("--force");
     EXPECT_EQ(run(arguments).status, 0);

@@ -255,6 +255,15 @@ TEST(Study, SLOW_AFullDiskEndsTheStudyAndItCanBeResumed) {
   expectSameResults(folder, "whole", "out");
 }
 
+TEST(Study, AFileOfTheUserUnderTheNameOfAPartIsNamedBeforeAnyPartIsComputed) {
+  const TemporaryFolder folder;
+  const std::string mine = folder.write("out/parts/part_00002.csv", "mine\n");
+  EXPECT_THAT(errorOfRun({"study", study(folder), "-o", folder / "out"}, 2),
+              HasSubstr("part_00002.csv: is a file that emscape did not write"));
+  EXPECT_EQ(readFile(mine), "mine\n");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/parts/part_00001.csv"));
+}
+
 TEST(Study, PlanListsWork) {
   const TemporaryFolder folder;
   const json plan = json::parse(runWell({"study", study(folder), "--plan", "--json", "--quiet"}).out);
@@ -365,7 +374,8 @@ TEST(Study, DoesNotReplaceFilesOfTheStudy) {
               HasSubstr("'nan' is not a time limit"));
   EXPECT_FALSE(std::filesystem::exists(folder / "new"));
   folder.write("out/report.html", "<html>another program's</html>");
-  EXPECT_THAT(refused({"study", file, "-o", folder / "out"}), HasSubstr("is no report of emscape"));
+  EXPECT_THAT(refused({"study", file, "-o", folder / "out"}),
+              HasSubstr("report.html is a file that emscape did not write"));
   EXPECT_EQ(readFile(folder / "results.csv"), sites);
   EXPECT_EQ(readFile(folder / "sites.csv"), sites);
   EXPECT_EQ(readFile(folder / "out/report.html"), "<html>another program's</html>");

@@ -109,6 +109,21 @@ TEST_F(TerrainProgram, DescribesAndDrawsFilesAndScenarios) {
   EXPECT_EQ(run({"terrain", folder_ / "none.tif"}).status, 3);
 }
 
+// PROJ reports that a grid is missing when the name of the coordinate system is asked for.
+TEST_F(TerrainProgram, LibrariesPrintNothingBesideTheMessage) {
+  plainGrid();
+  const std::string file = folder_.write(
+      "a.vrt",
+      "<VRTDataset rasterXSize=\"3\" rasterYSize=\"3\"><SRS>+proj=longlat +ellps=bessel "
+      "+nadgrids=none.gsb</SRS>"
+      "<GeoTransform>-84.4, 0.16, 0, 36.58, 0, -0.16</GeoTransform><VRTRasterBand dataType=\"Float32\" "
+      "band=\"1\">"
+      "<SimpleSource><SourceFilename relativeToVRT=\"1\">plain.asc</SourceFilename><SourceBand>1</SourceBand>"
+      "</SimpleSource></VRTRasterBand></VRTDataset>");
+  EXPECT_EQ(errorOfRun({"terrain", file}, 3),
+            "emscape: error: elevation file " + file + ": its posts are not on the earth\n");
+}
+
 TEST_F(TerrainProgram, WhatIsAssumedIsAWarningOfEveryResult) {
   const std::string file = scenario(", missing: sea", -84.09, plainGrid());
   const auto hasWarning = [](const json& warnings) {

@@ -37,6 +37,24 @@ TEST_F(Validate, ShippedScenariosAreWithoutFault) {
   }
 }
 
+TEST_F(Validate, ReportsTheFaultsOfAllFilesOfTheTerrain) {
+  for (const char* const name : {"a.tif", "b.tif", "s.tif", "c.tif"}) writeFile(folder_ / name, "no raster");
+  const std::string terrain =
+      "terrain: {files: [a.tif, b.tif], surface_files: [s.tif], land_cover: {files: [c.tif], classes: "
+      "worldcover}}\nplatforms:";
+  const ProgramResult sound = run({"validate", changed("platforms:", terrain)});
+  EXPECT_EQ(sound.status, 3);
+  for (const char* const name : {"a.tif", "b.tif", "s.tif", "c.tif"})
+    EXPECT_THAT(sound.out, HasSubstr(name)) << sound.out;
+  // Beside an error of the scenario itself.
+  std::string text = readFile(folder_ / "changed.yaml");
+  writeFile(folder_ / "wrong.yaml", text.replace(text.find("power_w: 1000\n"), 13, "power_w: -1"));
+  const ProgramResult wrong = run({"validate", folder_ / "wrong.yaml"});
+  EXPECT_EQ(wrong.status, 3);
+  for (const char* const part : {"power_w", "a.tif", "b.tif", "s.tif", "c.tif"})
+    EXPECT_THAT(wrong.out, HasSubstr(part)) << wrong.out;
+}
+
 TEST_F(Validate, ReportsMemoryOfTheField) {
   const json work = json::parse(run({"validate", shippedScenario("quick.yaml"), "--json"}).out).at("work");
   EXPECT_EQ(work.at("steps"), 5);
@@ -49,6 +67,29 @@ TEST_F(Validate, ReportsMemoryOfTheField) {
   EXPECT_EQ(work.at("terrain_mib"), 0);
   EXPECT_EQ(json::parse(run({"info", shippedScenario("quick.yaml"), "--json"}).out).at("work").at("step_mib"),
             work.at("step_mib"));
+}
+
+TEST_F(Validate, HasWarningsOfFilesInItsJsonToo) {
+  const TemporaryFolder folder;
+  std::string cuts = "NAME a\nGAIN 15\n";
+  for (const char* const plane : {"HORIZONTAL", "VERTICAL"}) {
+    cuts += plane + std::string(" 360\n");
+    for (int angle = 0; angle < 360; ++angle) cuts += std::to_string(angle) + " 0\n";
+  }
+  folder.write("a.msi", cuts);
+  const ProgramResult result =
+      run({"validate", shippedScenario("quick.yaml"), "--json", "--set",
+           "emitters.radar.antenna={pattern: file, file: " + (folder / "a.msi") + "}"});
+  EXPECT_THAT(result.err, HasSubstr("its GAIN has no unit and is taken as dBd"));
+  const json problems = json::parse(result.out).at("problems");
+  int told = 0;
+  for (const json& problem : problems) {
+    if (problem.at("message").get<std::string>().find("a.msi: its GAIN has no unit") == std::string::npos)
+      continue;
+    ++told;
+    EXPECT_EQ(problem.at("severity"), "warning");
+  }
+  EXPECT_EQ(told, 1);
 }
 
 TEST_F(Validate, EstimatesTimeByVoxelsModelsAndThreads) {

@@ -51,6 +51,28 @@ TEST(UnfinishedFile, IsPublishedWithTheFileBesideIt) {
   }
 }
 
+TEST(UnfinishedFile, IsNotPublishedOverAFileOfTheUserBesideTheFormerOne) {
+  const test::TemporaryFolder folder;
+  for (const bool has_former : {false, true}) {
+    for (const bool has_labels : {true, false}) {
+      if (has_former) {
+        UnfinishedFile former(folder / "a.tif");
+        test::writeFile(former.temporary(), "former");
+        former.publish(".aux.xml");
+      }
+      UnfinishedFile file(folder / "a.tif");
+      test::writeFile(file.temporary(), "raster");
+      if (has_labels) test::writeFile(file.temporary().string() + ".aux.xml", "labels");
+      folder.write("a.tif.aux.xml", "statistics");
+      EXPECT_THAT(test::errorOf([&] { file.publish(".aux.xml"); }, ErrorCode::usage),
+                  testing::HasSubstr("a.tif.aux.xml: is a file that emscape did not write"));
+      EXPECT_EQ(test::readFile(folder / "a.tif.aux.xml"), "statistics");
+      EXPECT_EQ(fs::exists(folder / "a.tif"), has_former);
+      fs::remove(folder / "a.tif.aux.xml");
+    }
+  }
+}
+
 // Libraries would write -1 into the file.
 TEST(UnfinishedFile, ThatDoesNotKnowItsPositionFails) {
   const test::TemporaryFolder folder;
@@ -150,7 +172,11 @@ TEST(UnfinishedFile, ReplacesALinkOfItsNameAndNotWhatItNames) {
   const test::TemporaryFolder folder;
   folder.write("victim", "precious");
   fs::create_symlink("victim", folder.path() / "a.png");
-  writeWhole(folder / "a.png", [](std::ostream& stream) { stream << "picture"; });
+  const auto write = [](std::ostream& stream) { stream << "picture"; };
+  EXPECT_THAT(test::errorOf([&] { writeWhole(folder / "a.png", write); }, ErrorCode::usage),
+              HasSubstr("a.png: is a link"));
+  EXPECT_TRUE(fs::is_symlink(folder.path() / "a.png"));
+  writeWhole(folder / "a.png", write, Replaces::any);
   EXPECT_EQ(test::readFile(folder / "victim"), "precious");
   EXPECT_EQ(test::readFile(folder / "a.png"), "picture");
   EXPECT_FALSE(fs::is_symlink(folder.path() / "a.png"));

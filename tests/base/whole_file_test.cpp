@@ -10,6 +10,7 @@
 #include "base/files/file_digest.h"
 #include "base/files/file_patch.h"
 #include "base/files/file_reading.h"
+#include "base/files/folder.h"
 #include "base/files/unfinished_file.h"
 #include "base/large_array.h"
 #include "tests/support/errors.h"
@@ -68,7 +69,7 @@ TEST_F(WholeFile, OfManyBytesIsNeitherWrittenNorReadOnceTheWorkIsStopped) {
 }
 
 TEST_F(WholeFile, KeepsWhoMayReadTheFileThatItReplaces) {
-  for (const auto mode : {fs::perms(0600), fs::perms(0640), fs::perms(0444)}) {
+  for (const auto mode : {fs::perms(0600), fs::perms(0640), fs::perms(0664)}) {
     writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "one"; });
     fs::permissions(folder_ / "a", mode);
     writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "two"; });
@@ -76,6 +77,16 @@ TEST_F(WholeFile, KeepsWhoMayReadTheFileThatItReplaces) {
     EXPECT_EQ(fs::status(folder_ / "a").permissions(), mode);
     fs::remove(folder_ / "a");
   }
+}
+
+TEST_F(WholeFile, AWriteProtectedFileStays) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write every file";
+  writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "one"; });
+  fs::permissions(folder_ / "a", fs::perms(0444));
+  const std::string error = test::errorOf(
+      [&] { writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "two"; }); }, ErrorCode::other);
+  EXPECT_THAT(error, testing::HasSubstr("a: cannot write: Permission denied"));
+  EXPECT_EQ(textOf(folder_ / "a"), "one");
 }
 
 TEST_F(WholeFile, ATargetIsRefusedBeforeItIsWritten) {
@@ -116,7 +127,7 @@ TEST_F(WholeFile, AFileThatAnotherProcessWritesMeanwhileStaysUnlessItIsToBeRepla
   };
   const std::string error = test::errorOf(
       [&] {
-        writeWhole({{folder_ / "a", good}, {folder_ / "b", slow}}, false);
+        writeWhole({{folder_ / "a", good}, {folder_ / "b", slow}}, Replaces::nothing);
       },
       ErrorCode::usage);
   EXPECT_THAT(error, HasSubstr(folder_ / "b" + " exists; --force replaces it"));
@@ -130,6 +141,17 @@ TEST_F(WholeFile, NamesAMissingFolder) {
   EXPECT_THAT(
       test::errorOf([&] { writeWhole(folder_ / "none/a", [](std::ostream&) {}); }, ErrorCode::other),
       HasSubstr(folder_ / "none/a" + ": cannot write: the folder " + folder_ / "none" + " does not exist"));
+}
+
+TEST_F(WholeFile, NamesAFileInPlaceOfAFolder) {
+  const std::string file = folder_.write("file", "");
+  for (const char* output : {"file/a", "file/none/a"}) {
+    EXPECT_EQ(test::errorOf([&] { writeWhole(folder_ / output, [](std::ostream&) {}); }, ErrorCode::other),
+              folder_ / output + ": cannot write: " + file + " is a file, not a folder; give another output");
+    EXPECT_EQ(test::errorOf([&] { makeFolder(folder_ / output); }, ErrorCode::usage),
+              folder_ / output + ": is to be a folder, but " + file + " is a file; give another output");
+  }
+  EXPECT_THAT(test::errorOf([&] { makeFolder(file); }, ErrorCode::usage), HasSubstr("but it is a file"));
 }
 
 TEST_F(WholeFile, RefusesFoldersAndDevices) {

@@ -47,6 +47,16 @@ TEST(Csv, AQuoteThatIsNotClosedIsACharacter) {
   EXPECT_EQ(rowsOf("\"a,b\n\"c\"d,e\"\n\"\"\",f\n"), "1:1'\"a'4'b';2:1'\"c\"d'6'e\"';3:1'\"\"\"'5'f';");
 }
 
+TEST(Csv, TellsALastRowWithoutALineEnd) {
+  for (const char* const ended : {"", "a\n1\n", "a\r\n1\r\n", "a\n1\n# end", "a\n1\n  "})
+    EXPECT_EQ(CsvReader(ended).unendedText("a row"), "") << ended;
+  for (const char* const cut : {"a\n1", "a\r\n1", "a\r1"})
+    EXPECT_EQ(
+        CsvReader(cut).unendedText("a row").rfind("line 2, a row, has no end: if the file was cut there", 0),
+        0u)
+        << cut;
+}
+
 TEST(Csv, AHeaderHasCommasAndNames) {
   const auto faultOf = [](const std::string& text) {
     CsvReader reader(text);

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "document/schema_check.h"
+
 namespace emscape::document {
 namespace {
 
@@ -81,6 +85,16 @@ TEST(Document, ErrorsHaveLocations) {
   EXPECT_THAT(faultOf("a: 1\n---\nb: 2\n"), HasSubstr("a second document begins here"));
   EXPECT_THAT(faultOf("a: [1, 2\n"), HasSubstr("not valid YAML"));
   EXPECT_THAT(faultOf("a: *none\n"), HasSubstr("a.yaml:1:"));
+}
+
+TEST(Document, TextOfManyErrorsTellsTwentyAndTheNumberOfTheOthers) {
+  ProblemList problems;
+  for (int line = 1; line <= 23; ++line) problems.addError({"a.yaml", line, 1}, std::string(2000, 'x'));
+  problems.addWarning({"a.yaml", 1, 1}, "is no error");
+  const std::string text = errorsText(problems.inOrder());
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 20);
+  EXPECT_THAT(text, testing::StartsWith("a.yaml:1:1: xxx"));
+  EXPECT_THAT(text, testing::EndsWith("\n3 further errors are not told"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "emfield/check/reference_check.h"
 #include "emfield/check/reference_table.h"
+#include "emscape/base/log.h"
 #include "propagation/air/gases.h"
 #include "propagation/air/rain.h"
 #include "propagation/limits.h"
@@ -45,6 +46,16 @@ TEST_F(CheckFolder, ReadsATableByColumnNames) {
   EXPECT_EQ(table.text(0, "c"), "x y");
   EXPECT_FALSE(table.has(1, "b"));
   EXPECT_EQ(table.location(1).line, 4);
+}
+
+TEST_F(CheckFolder, TellsALastRowWithoutALineEnd) {
+  std::string warnings;
+  setLogSink([&](LogLevel, const std::string& text) { warnings += text; });
+  ReferenceTable(write("whole.csv", "a,b\n1,2\n"), {"a"});
+  EXPECT_EQ(warnings, "");
+  ReferenceTable(write("cut.csv", "a,b\n1,2"), {"a"});
+  setLogSink({});
+  EXPECT_THAT(warnings, HasSubstr("cut.csv:2:1: a row has no end"));
 }
 
 TEST_F(CheckFolder, NamesFileAndLineOfAMalformedTable) {

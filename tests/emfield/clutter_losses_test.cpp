@@ -6,12 +6,14 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "emfield/excess/clutter_text.h"
 #include "emfield/excess/emitter_excess.h"
 #include "emfield/excess/model_check.h"
 #include "emfield/ground/ground_posts.h"
+#include "emfield/link/path_verdict.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
@@ -130,7 +132,26 @@ TEST(ClutterHeights, OfAWoodOnThePathCostDiffractionAndAreATermOfTheBudget) {
     EXPECT_GT(over_trees.excess.loss_db, over_ground.excess.loss_db + 3) << toString(model);
     EXPECT_NEAR(over_trees.excess.clutter_db, -over_trees.find("clutter_db")->value, 1e-9);
     EXPECT_THAT(over_trees.verdict, HasSubstr("dB of it by trees and buildings")) << toString(model);
+    EXPECT_THAT(pathVerdictOf(over_trees), HasSubstr("dB of it by trees and buildings")) << toString(model);
   }
+}
+
+TEST(ClutterHeights, ByItmThatAreFarFromThoseByEdgesAreTold) {
+  const GroundWithTrees woods(true);
+  int told = 0;
+  for (const double end_agl_m : {5.0, 9.0, 10.0, 12.0, 14.5, 30.0}) {
+    const PathBudget by_itm = budgetTo(mastOf(PropagationModel::itm, 20), woods, 45.027, 100 + end_agl_m),
+                     by_edges =
+                         budgetTo(mastOf(PropagationModel::diffraction, 20), woods, 45.027, 100 + end_agl_m);
+    const bool is_far = std::abs(by_itm.excess.clutter_db - by_edges.excess.clutter_db) > 10;
+    told += is_far ? 1 : 0;
+    const auto warnings = std::count_if(by_itm.warnings.begin(), by_itm.warnings.end(), [](const auto& text) {
+      return text.find("trees and buildings on the path cost") != std::string::npos;
+    });
+    EXPECT_EQ(warnings, is_far ? 1 : 0) << end_agl_m;
+  }
+  EXPECT_GT(told, 0);
+  EXPECT_LT(told, 6);
 }
 
 TEST(ClutterHeights, ThatBlockAPathAreAnObstacleWithPlaceAndHeightForModelsThatReadThem) {
@@ -348,7 +369,7 @@ TEST(TerminalClutter, IsAddedOrReplacesASmallerLossByTerrain) {
                   : north_deg > 0.145 && north_deg < 0.155 ? 200
                                                            : 0);
   });
-  const auto scenario = mastOf(PropagationModel::diffraction, 10);
+  const auto scenario = mastOf(PropagationModel::diffraction, 12);
   const auto lossAt = [&](double latitude_deg) {
     return budgetTo(scenario, hills, latitude_deg, 102).excess.loss_db;
   };
@@ -375,6 +396,62 @@ TEST(TerminalClutter, IsAddedOrReplacesASmallerLossByTerrain) {
   }
 }
 
+// Whether an antenna is in the clutter follows from its height, not from who transmits.
+TEST(TerminalClutter, IsThatOfTheSameEndsWhoeverTransmits) {
+  const MadeTerrain flat(45, 5, 0.2, [](double, double) { return 100.0; });
+  const auto lossOver = [&](double from_agl_m, double to_agl_m) {
+    const auto scenario = mastOf(PropagationModel::free_space, from_agl_m);
+    scenario->ground.terminal_clutter = TerminalClutterModel::p2108;
+    return budgetTo(scenario, flat, 45.04, 100 + to_agl_m).excess.loss_db;
+  };
+  const double one_end_db = lossOf(1, 4444, 50);
+  for (const auto& [low_m, high_m, ends] :
+       {std::tuple{1.5, 25.0, 1}, {10.0, 30.0, 1}, {10.5, 25.0, 0}, {1.5, 9.0, 2}}) {
+    EXPECT_NEAR(lossOver(low_m, high_m), ends * one_end_db, 0.02) << low_m << " to " << high_m;
+    EXPECT_NEAR(lossOver(high_m, low_m), ends * one_end_db, 0.02) << high_m << " to " << low_m;
+  }
+}
+
+TEST(TerminalClutter, OfALowRadarIsInItsEchoesAsInItsJamming) {
+  auto scenario = emptyScenario(FrameKind::altitude, 45, 5, {30e3, 30e3, 6e3}, {8, 8, 16});
+  scenario::Emitter radar = plainEmitter("radar", 0), jammer = plainEmitter("jammer", 0);
+  radar.kind = scenario::EmitterKind::radar;
+  radar.scan.kind = scenario::ScanKind::track;
+  jammer.kind = scenario::EmitterKind::jammer;
+  jammer.power_w = 1e-6;
+  addEmitter(*scenario, {45, 5, 0}, radar);
+  scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
+  addEmitter(*scenario, {45, 5.2, 3000 + geoidUndulation_m(45, 5.2)}, jammer);
+  const auto at = [&](double radar_agl_m, TerminalClutterModel clutter) {
+    scenario->platforms[0].track[0].position.height_agl_m = radar_agl_m;
+    scenario->ground.terminal_clutter = clutter;
+    return pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0,
+                      {{45.1, 5, 1000 + geoidUndulation_m(45.1, 5)}, 1000}, PropagationModel::free_space,
+                      nullptr);
+  };
+  const double loss_db = lossOf(1, 11e3, 50);  // of all distances beyond 2 km
+  for (const double radar_agl_m : {8.0, 12.0}) {
+    const PathBudget open = at(radar_agl_m, TerminalClutterModel::none),
+                     town = at(radar_agl_m, TerminalClutterModel::p2108);
+    const auto change_db = [&](const char* key) { return town.find(key)->value - open.find(key)->value; };
+    const double expected_db = radar_agl_m < 10 ? loss_db : 0;
+    EXPECT_NEAR(change_db("snr_db"), -2 * expected_db, 0.01) << radar_agl_m;
+    EXPECT_NEAR(change_db("jammer_to_signal_db"), expected_db, 0.01) << "the echo passes it twice";
+  }
+}
+
+TEST(TerminalClutter, OverASmoothEarthIsToldAsClutterBesideTheEarthsBulge) {
+  const auto scenario = mastOf(PropagationModel::diffraction, 2);
+  scenario->terrain.reset();
+  scenario->ground.terminal_clutter = TerminalClutterModel::p2108;
+  const PathBudget budget =
+      pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0,
+                 {{45.1, 5, 2 + geoidUndulation_m(45.1, 5)}, 2}, PropagationModel::diffraction, nullptr);
+  EXPECT_THAT(budget.excess.warnings, Contains(AllOf(HasSubstr("the smooth earth costs "),
+                                                     HasSubstr(" of P.2108-1 are added to it for clutter "
+                                                               "around both ends"))));
+}
+
 TEST(TerminalClutter, AddsNothingToAFieldThatTerrainEnds) {
   const MadeTerrain hill(45, 5, 0.2, [](double, double north_deg) {
     return north_deg > 0.115 && north_deg < 0.125 ? 300.0 : 100.0;
@@ -395,8 +472,7 @@ TEST(ClutterText, NamesWhatTheLossesInclude) {
   scenario::Emitter& emitter = scenario->emitters[0];
   EXPECT_EQ(clutterText(*scenario), "none");
   scenario->ground.terminal_clutter = TerminalClutterModel::p2108;
-  EXPECT_THAT(clutterText(*scenario),
-              HasSubstr("P.2108-1 (3.2) at receivers up to 10 m above the ground, 50 %"));
+  EXPECT_THAT(clutterText(*scenario), HasSubstr("P.2108-1 (3.2) at ends up to 10 m above the ground, 50 %"));
   scenario->ground.terminal_clutter_combine = propagation::ClutterCombination::larger;
   EXPECT_THAT(clutterText(*scenario),
               HasSubstr("50 % of locations, or the loss by terrain if that is larger"));

@@ -363,6 +363,28 @@ TEST_P(Clutter, EntersDetectionAsNoise) {
   EXPECT_LT(valueEast(*field(scenario, "detection_probability"), 5e3), 1e-4) << "a blind speed";
 }
 
+TEST_P(Clutter, ThatStandsStillIsOneSampleForAllPulses) {
+  scenario::Emitter radar = cluttered(trackingRadar());
+  radar.antenna = scenario::makeGaussian(kGain_dbi, 3, 40, -80);
+  radar.clutter->sea_state = 5;
+  radar.power_w = 1e9;  // far above the noise
+  radar.receiver.pulses = 16;
+  constexpr double kRange_m = 6e3;
+  radar.receiver.target_rcs_m2 = 1;
+  const double of_unit_db = double(valueEast(*field(lineWith(radar), "sclnr_db"), kRange_m));
+  for (const int swerling : {0, 1, 2}) {
+    radar.receiver.swerling = swerling;
+    for (const int samples : {1, 4, 16}) {
+      Detector of_samples = detectorOf(radar.receiver);
+      of_samples.pulses = samples;
+      radar.clutter->independent_samples = samples;
+      radar.receiver.target_rcs_m2 = dbToRatio(requiredSnrDb(of_samples, 0.5) - of_unit_db);
+      EXPECT_NEAR(valueEast(*field(lineWith(radar), "detection_probability"), kRange_m), 0.5, 2e-3)
+          << swerling << ' ' << samples;
+    }
+  }
+}
+
 TEST_P(Clutter, SLOW_VoxelEqualsItsPath) {
   const auto terrain = std::make_shared<MadeTerrain>(44.5, -71.5, 1);
   for (const bool looks_at_target : {true, false}) {

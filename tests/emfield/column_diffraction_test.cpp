@@ -192,7 +192,8 @@ TEST(ColumnDiffraction, OfMoreCandidatesThanThereIsRoomForIsTheSame) {
     ColumnPosts posts(setup.station, setup.ground, path, true);
     const auto distance_m = static_cast<float>(path.distance_m);
     diffraction_detail::CandidatePosts candidates(false);
-    diffraction_detail::CandidatePosts::Records records(0);
+    const float clear = propagation::kKnifeEdgeClear<float> * std::sqrt(0.05f / distance_m);  // at 3 GHz
+    diffraction_detail::CandidatePosts::Records records(0, clear);
     int kept = 0;
     posts.each([](float, float, float) { return false; },
                [&](const PathPost& post) {

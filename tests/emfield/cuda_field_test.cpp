@@ -458,6 +458,8 @@ TEST_P(CudaField, RadarProductsEqualCpu) {
     for (std::size_t e = 0; e < scenario->emitters.size(); ++e) {
       scenario->emitters[e].frequency_hz = 1e9;
       if (e % 3 == 1) scenario->emitters[e].kind = scenario::EmitterKind::jammer;
+      if (e % 6 == 1) scenario->emitters[e].waveform = scenario::Waveform{1000, 2e-4, {}};
+      if (e % 6 == 0) scenario->emitters[e].receiver.side_lobe_blanking = scenario::SideLobeBlanking{5, 0};
     }
     scenario->output.radar_look = look;
     scenario->output.quantities = {"snr_db", "detection_probability", "jammer_to_signal_db",

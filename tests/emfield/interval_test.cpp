@@ -455,6 +455,154 @@ TEST_P(Intervals, SLOW_LookWhereTheBeamPassesInBursts) {
   }
 }
 
+/// A turning radar and jammers that take turns, from the interval's begin on.
+std::shared_ptr<Scenario> radarAmidBlinkingJammers(const ScanSpec& scan) {
+  auto scenario = radarAround(scan);
+  scenario->emitters[0].power_w = 500;
+  const std::vector<Bursts> bursts{
+      {{kBegin_s + 0.5, kBegin_s + 2.1}, {kBegin_s + 4, kBegin_s + 9.5}, {kBegin_s + 14.2, kBegin_s + 15}},
+      {{kBegin_s + 5, kBegin_s + 7}, {kBegin_s + 12, kBegin_s + 40}}};
+  for (const Bursts& active_s : bursts) {
+    Emitter jammer = jammerOf(1000 * static_cast<double>(scenario->emitters.size()));
+    jammer.active_s = active_s;
+    addEmitter(*scenario, pointAt(*scenario, 40e3, 30e3), jammer);
+  }
+  return scenario;
+}
+
+// Each pass of the beam is one look, jammed by those that radiate at its time.
+TEST_P(Intervals, JamEachLookByTheJammersOfItsTime) {
+  constexpr double kSeconds = 17;
+  const auto scenario = radarAmidBlinkingJammers(rotating(10));
+  std::vector<UnsetVector<float>> by_jammers;  // bit n: of jammer n
+  for (int set = 0; set < 4; ++set) {
+    const auto instant = std::make_shared<Scenario>(*scenario);
+    for (int n = 0; n < 2; ++n) {
+      Emitter& jammer = instant->emitters[static_cast<std::size_t>(n) + 1];
+      jammer.active_s.clear();
+      jammer.enabled = (set >> n) % 2 == 1;
+    }
+    FieldSolver solver = solverOf(instant);
+    by_jammers.push_back(valuesOf(solver, instant, kBegin_s));
+  }
+  const UnsetVector<float> all = overInterval(scenario, IntervalKind::cumulative, kSeconds);
+  const UnsetVector<float> largest = overInterval(scenario, IntervalKind::max_hold, kSeconds);
+  scenario->output.quantities = {"detection_age_s"};
+  const UnsetVector<float> age = overInterval(scenario, IntervalKind::cumulative, kSeconds);
+  const volume::Grid grid = gridOf(scenario->region);
+  int compared = 0, between = 0, aged = 0;
+  for (int j = 0; j < grid.dims.y; ++j) {
+    for (int i = 0; i < grid.dims.x; ++i) {
+      const auto v = static_cast<std::size_t>(grid.index(i, j, 1));
+      const Vec3d at = grid.center_m(i, j, 1) - grid.center_m(grid.dims.x / 2, grid.dims.y / 2, 0);
+      if (std::hypot(at.x, at.y) < 2000) continue;
+      const double azimuth_deg = radToDeg(std::atan2(at.x, at.y));
+      double missed = 1, best = 0, age_s = -1;
+      bool is_sure = true;
+      for (double pass_s = std::fmod(azimuth_deg - 20 + 720, 360) / 60; pass_s < kBegin_s + kSeconds;
+           pass_s += 6) {
+        is_sure = is_sure && std::abs(pass_s - kBegin_s) > 1e-3;
+        if (pass_s < kBegin_s) continue;
+        int set = 0;
+        for (int n = 0; n < 2; ++n) {
+          for (const auto& burst : scenario->emitters[static_cast<std::size_t>(n) + 1].active_s) {
+            set |= pass_s >= burst.begin_s && pass_s < burst.end_s ? 1 << n : 0;
+            is_sure =
+                is_sure && std::abs(pass_s - burst.begin_s) > 1e-3 && std::abs(pass_s - burst.end_s) > 1e-3;
+          }
+        }
+        const double probability = static_cast<double>(by_jammers[static_cast<std::size_t>(set)][v]);
+        missed *= 1 - probability;
+        best = std::max(best, probability);
+        if (probability >= 0.5) age_s = kBegin_s + kSeconds - pass_s;
+      }
+      if (!is_sure) continue;
+      ++compared;
+      between += best > 0.1 && best < 0.9;
+      aged += age_s > 6;
+      EXPECT_NEAR(static_cast<double>(all[v]), 1 - missed, 1e-4) << azimuth_deg;
+      EXPECT_GE(static_cast<double>(largest[v]), best - 1e-4) << azimuth_deg;
+      if (best > 0.3) {
+        EXPECT_NEAR(static_cast<double>(largest[v]), best, 0.02) << azimuth_deg;
+      }
+      EXPECT_NEAR(static_cast<double>(age[v]), age_s, 1e-3) << azimuth_deg;
+    }
+  }
+  EXPECT_GT(compared, 150);
+  EXPECT_GT(between, 20);
+  EXPECT_GT(aged, 5) << "some are detected only in an earlier turn";
+}
+
+// Whether the parts of an interval are told apart changes nothing by itself, also beside what a scan passes.
+TEST_P(Intervals, AreTheSameByTheTimesOfAJammerWithoutPower) {
+  ScanSpec northeast = sweeping(ScanKind::sector, 90, 9);  // voxels lie in the directions of its edges
+  northeast.azimuth_deg = 45;
+  for (const ScanSpec& scan : {rotating(3), rotating(10), sweeping(ScanKind::sector, 90, 9), northeast,
+                               sweeping(ScanKind::sector, 70, 60), sweeping(ScanKind::raster, 70, 60, 3)}) {
+    const auto scenario = radarAround(scan);
+    scenario->emitters[0].power_w = 500;
+    addEmitter(*scenario, pointAt(*scenario, 40e3, 30e3), jammerOf(1e-12));
+    const volume::Grid grid = gridOf(scenario->region);
+    for (const double seconds : {4.0, 10.0}) {
+      scenario->emitters[1].active_s.clear();
+      const UnsetVector<float> always = overInterval(scenario, IntervalKind::cumulative, seconds);
+      scenario->emitters[1].active_s = {{kBegin_s, kBegin_s + 1.3}, {kBegin_s + 2.9, kBegin_s + 3.4}};
+      const UnsetVector<float> in_parts = overInterval(scenario, IntervalKind::cumulative, seconds);
+      int differing = 0, between = 0;
+      for (std::size_t v = 0; v < always.size(); ++v) {
+        const Vec3d at = grid.center_m(static_cast<int>(v) % grid.dims.x,
+                                       static_cast<int>(v) / grid.dims.x % grid.dims.y, 1) -
+                         grid.center_m(grid.dims.x / 2, grid.dims.y / 2, 0);
+        if (std::abs(at.x - at.y) < 1e-6) continue;  // the jammer switches while the beam is there
+        differing += std::abs(always[v] - in_parts[v]) > 1e-4F;
+        between += always[v] > 0.05F && always[v] < 0.95F;
+      }
+      EXPECT_EQ(differing, 0) << int(scan.kind) << ' ' << seconds;
+      EXPECT_GT(between, 10) << int(scan.kind) << ' ' << seconds;
+    }
+  }
+}
+
+TEST_P(Intervals, AreJammedWhileTheJammersPlatformIsPresent) {
+  const auto scenario = radarAmidBlinkingJammers(rotating(10));
+  scenario->emitters.pop_back();
+  Emitter& jammer = scenario->emitters[1];
+  jammer.active_s = {{kBegin_s + 3, kBegin_s + 8}};
+  const UnsetVector<float> expected = overInterval(scenario, IntervalKind::cumulative, 17);
+  jammer.active_s.clear();
+  scenario::Platform& platform = scenario->platforms[static_cast<std::size_t>(jammer.platform)];
+  platform.track.push_back(platform.track[0]);
+  platform.track[0].t_s = kBegin_s + 3;
+  platform.track[1].t_s = kBegin_s + 8;
+  const UnsetVector<float> found = overInterval(scenario, IntervalKind::cumulative, 17);
+  for (std::size_t v = 0; v < found.size(); ++v) ASSERT_NEAR(found[v], expected[v], 1e-6f) << v;
+  platform.outside_track = scenario::OutsideTrack::hold;
+  EXPECT_NE(overInterval(scenario, IntervalKind::cumulative, 17), expected);
+}
+
+// A beam that stands still has one look in the interval, shared out by time.
+TEST_P(Intervals, SharesTheLooksOfAFixedBeamByTheTimesOfJammers) {
+  ScanSpec scan;
+  scan.kind = ScanKind::track;
+  const auto scenario = radarAmidBlinkingJammers(scan);
+  scenario->emitters.pop_back();
+  const UnsetVector<float> found = overInterval(scenario, IntervalKind::cumulative, 10);
+  const double jammed = (1.6 + 5.5) / 10;
+  std::vector<UnsetVector<float>> by_jammers;
+  for (const bool is_on : {false, true}) {
+    const auto instant = std::make_shared<Scenario>(*scenario);
+    instant->emitters[1].active_s.clear();
+    instant->emitters[1].enabled = is_on;
+    FieldSolver solver = solverOf(instant);
+    by_jammers.push_back(valuesOf(solver, instant, kBegin_s));
+  }
+  for (std::size_t v = 0; v < found.size(); ++v) {
+    const double missed = std::pow(1 - static_cast<double>(by_jammers[0][v]), 1 - jammed) *
+                          std::pow(1 - static_cast<double>(by_jammers[1][v]), jammed);
+    ASSERT_NEAR(static_cast<double>(found[v]), 1 - missed, 1e-4) << v;
+  }
+}
+
 TEST_P(Intervals, CountEveryBurst) {
   auto scenario = radarAround(rotating(10));
   FieldSolver solver = solverOf(scenario);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "emscape/emfield/link/path_budget.h"
 #include "tests/emfield/jamming_forms.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/radar_duel.h"
@@ -20,6 +21,22 @@ TEST(JammerToSignal, SelfScreeningJammerEqualsClosedForm) {
         jammerToSignalDb(linkTowardsTarget(radar), 5, range_m, linkTowardsRadar(jammer, kGain_dbi), range_m);
     EXPECT_NEAR(east(scenario, "jammer_to_signal_db", range_m), expected, 1e-3);
   }
+}
+
+TEST(JammerToSignal, OfAJammerOnTheRadarsOwnPlatformIsNotModelled) {
+  const auto scenario = duel(trackingRadar(), jammerOf(5e4), 0, 60e3);
+  scenario->output.radar_look = scenario::RadarAim::target;
+  const float jammed = east(scenario, "detection_probability", 10e3);
+  scenario->emitters[1].platform = 0;
+  const float own = east(scenario, "detection_probability", 10e3);
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
+  const GeodeticPosition at = pointAt(*scenario, 10e3, 0);
+  const PathBudget budget = pathBudget(snapshot, 0, {at, at.height_ellipsoid_m},
+                                       propagation::PropagationModel::free_space, nullptr);
+  EXPECT_EQ(budget.find("jammer_to_signal_db"), nullptr);
+  scenario->emitters.pop_back();
+  EXPECT_EQ(own, east(scenario, "detection_probability", 10e3));
+  EXPECT_GT(own, jammed + 0.2f);
 }
 
 TEST(JammerToSignal, OfAStandOffJammerGrowsWithTheFourthPowerOfRange) {

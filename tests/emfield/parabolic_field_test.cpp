@@ -2,9 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "emfield/excess/model_check.h"
 #include "emscape/emfield/link/path_budget.h"
+#include "emscape/propagation/steep_ground.h"
 #include "propagation/parabolic_equation/march/march_step.h"
-#include "propagation/parabolic_equation/warnings.h"
 #include "scenario/antenna/shapes.h"
 #include "tests/emfield/parabolic_samples.h"
 #include "tests/support/errors.h"
@@ -331,20 +332,58 @@ TEST(ParabolicField, WarnsOutsideMeasuredSettings) {
               ::testing::HasSubstr("roughness (rms) 3 m"));
 }
 
-TEST(ParabolicField, WarnsOfAnAntennaInAValley) {
-  const auto warningsWith = [](double max_angle_deg) {
-    const auto crater = std::make_shared<const MadeTerrain>(
-        kLatitude_deg, kLongitude_deg, 0.4,
-        [](double east, double north) { return std::hypot(east - 0.2, north - 0.2) > 0.03 ? 500.0 : 100.0; });
-    const auto scenario = around(3e8, 110, {20e3, 20e3, 400}, {20, 20, 4}, 520);
+/// A warning of steep ground: what is lost (percent), 0 without one, and the advice.
+struct Steep {
+  double lost = 0;
+  std::string advice;  ///< value of max_angle_deg; empty: none helps
+};
+
+Steep steepOf(const std::vector<std::string>& warnings) {
+  Steep found;
+  int sentences = 0;
+  for (const std::string& text : warnings) {
+    if (text.find("of the length of its marches") == std::string::npos) continue;
+    ++sentences;
+    const auto numberBefore = [&](const char* words) {
+      const std::size_t end = text.find(words);
+      if (end == std::string::npos) return 0.0;
+      const std::size_t begin = text.find_last_of(' ', end - 1);
+      return std::stod(text.substr(begin, end - begin));
+    };
+    found.lost = numberBefore(" % of the length") + numberBefore(" % is behind");
+    const std::string key = "; 'max_angle_deg: ";
+    const std::size_t at = text.find(key);
+    if (at != std::string::npos)
+      found.advice = text.substr(at + key.size(), text.find('\'', at + key.size()) - at - key.size());
+  }
+  EXPECT_LE(sentences, 1) << "one per emitter";
+  return found;
+}
+
+/// Over mountains and in a crater: who follows the advice loses at most half.
+TEST(ParabolicField, SLOW_AdviceOnTheLargestAngleHelps) {
+  const auto crater = std::make_shared<const MadeTerrain>(
+      kLatitude_deg, kLongitude_deg, 0.4,
+      [](double east, double north) { return std::hypot(east - 0.2, north - 0.2) > 0.03 ? 500.0 : 100.0; });
+  const auto ridges = std::make_shared<const MadeTerrain>(
+      kLatitude_deg, kLongitude_deg, 0.4,
+      [](double east, double) { return east > 0.2 ? 100 + 25 * std::sin(700 * east) : 100.0; });
+  const auto steepWith = [](const scenario::TerrainPtr& terrain, double antenna_msl_m, double max_angle_deg) {
+    const auto scenario = around(3e8, antenna_msl_m, {20e3, 20e3, 400}, {20, 20, 4}, 520);
     scenario->emitters[0].propagation.parabolic_equation.max_angle_deg = max_angle_deg;
-    FieldSolver solver(scenario, crater, {});
-    solver.update(scenario::snapshotAt(scenario, crater.get(), 0));
-    return solver.warnings();
+    FieldSolver solver(scenario, terrain, {});
+    solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
+    return steepOf(solver.warnings());
   };
-  const auto behind = ::testing::Contains(::testing::HasSubstr("a larger 'max_angle_deg' reaches further"));
-  EXPECT_THAT(warningsWith(3), behind);
-  EXPECT_THAT(warningsWith(12), ::testing::Not(behind));
+  for (const auto& [terrain, antenna_msl_m] :
+       {std::pair<scenario::TerrainPtr, double>{crater, 110}, {ridges, 300}}) {
+    const Steep before = steepWith(terrain, antenna_msl_m, 3);
+    EXPECT_GT(before.lost, 10);
+    ASSERT_FALSE(before.advice.empty());
+    const double advised_deg = before.advice == "auto" ? 0 : std::stod(before.advice);
+    const Steep after = steepWith(terrain, antenna_msl_m, advised_deg);
+    EXPECT_LE(after.lost, before.lost / 2);
+  }
 }
 
 TEST(ParabolicField, CountsGroundThatIsTooSteep) {
@@ -356,32 +395,88 @@ TEST(ParabolicField, CountsGroundThatIsTooSteep) {
   EXPECT_THAT(solver.warnings(), ::testing::Contains(::testing::HasSubstr("taken as steps of a staircase")));
 }
 
-// Ground of 8 degrees up and down.
-TEST(ParabolicField, NamesTheLeastAngleThatHoldsTheGround) {
+/// A march at 3 GHz and 4096 height steps over ground up and down.
+propagation::SteepGround marchOver(double slope_deg, double azimuth_deg, double angle_deg,
+                                   bool is_automatic = true) {
   constexpr int kSteps = 200;
+  constexpr double kStep_m = 50;
   std::vector<float> ground_m;
-  for (int i = 0; i <= kSteps; ++i) ground_m.push_back(i % 20 < 10 ? 7.0f * (i % 20) : 7.0f * (20 - i % 20));
-  propagation::MarchGrid grid;
-  grid.frequency_hz = 3e9;
-  grid.intervals = 4096;
-  grid.range_step_m = 50;
-  grid.slope_part = propagation::kPeMaxSlopePart;
-  const auto withAngle = [&](double angle_deg) {
-    grid.top_m = grid.intervals * propagation::kPeEvenBand * wavelength_m(grid.frequency_hz) /
-                 (2 * std::sin(degToRad(angle_deg)));
-    return propagation::staircaseWarning(grid, [&](const propagation::MarchGrid& of) {
-      return propagation::staircasePart(ground_m.data(), kSteps, of.range_step_m, of.maxSine(),
-                                        of.slope_part);
-    });
+  for (int i = 0; i <= kSteps; ++i)
+    ground_m.push_back(float(kStep_m * std::tan(degToRad(slope_deg)) * (i % 20 < 10 ? i % 20 : 20 - i % 20)));
+  propagation::SteepGround march;
+  march.max_angle_deg = angle_deg;
+  march.is_automatic = is_automatic;
+  march.with = [=](double max_angle_deg) -> std::vector<propagation::SteepAzimuth> {
+    if (max_angle_deg > 35) return {};
+    const double automatic_deg = std::ceil(radToDeg(std::asin(1.5 * std::sin(degToRad(slope_deg)))));
+    const double sine =
+        std::sin(degToRad(max_angle_deg > 0 ? max_angle_deg : automatic_deg)) / propagation::kPeEvenBand;
+    const double part =
+        propagation::staircasePart(ground_m.data(), kSteps, kStep_m, sine, propagation::kPeMaxSlopePart);
+    return {{degToRad(azimuth_deg), kSteps * kStep_m, part * kSteps * kStep_m, 0}};
   };
-  EXPECT_THAT(propagation::peWarningMessages(withAngle(3)),
-              ::testing::ElementsAre(::testing::AllOf(::testing::HasSubstr("100.0 % of the ground"),
-                                                      ::testing::HasSubstr("'max_angle_deg: 13'"))));
-  EXPECT_EQ(withAngle(13), 0u);  // 8 degrees fill 0.4 of the band
-  EXPECT_NE(withAngle(12), 0u);
-  grid.intervals = propagation::kPeMaxIntervals;
-  EXPECT_THAT(propagation::peWarningMessages(withAngle(3)),
-              ::testing::ElementsAre(::testing::HasSubstr("no larger")));
+  march.azimuths = march.with(angle_deg);
+  return march;
+}
+
+// Ground of 8 degrees fills 0.4 of the band of 13 degrees.
+TEST(ParabolicField, NamesTheLeastAngleThatHoldsTheGround) {
+  const std::string text = propagation::steepGroundWarning({marchOver(8, 359.8, 3)});
+  EXPECT_THAT(text, ::testing::HasSubstr("100.0 % of the length"));
+  EXPECT_THAT(text, ::testing::HasSubstr("at azimuth 0 degrees"));
+  EXPECT_THAT(text, ::testing::HasSubstr("'max_angle_deg: 13' leaves 0.0 %"));
+  EXPECT_EQ(propagation::steepGroundWarning({marchOver(8, 359.8, 13)}), "");
+}
+
+// An angle that holds the hills of one azimuth would lose the mountains of another, which is marched with a
+// larger one.
+TEST(ParabolicField, AdviceIsForAllMarchesOfAnEmitter) {
+  const std::string text = propagation::steepGroundWarning({marchOver(4, 10, 5), marchOver(16, 350, 24)});
+  EXPECT_THAT(text, ::testing::HasSubstr("between azimuths 350 and 10 degrees"));
+  EXPECT_THAT(text, ::testing::HasSubstr("'max_angle_deg: 25' leaves 0.0"));
+}
+
+TEST(ParabolicField, AdviceIsAutomaticWhereAGivenAngleLosesTheGround) {
+  EXPECT_THAT(propagation::steepGroundWarning({marchOver(4, 10, 9, false), marchOver(16, 350, 9, false)}),
+              ::testing::HasSubstr("'max_angle_deg: auto' leaves 0.0"));
+}
+
+TEST(ParabolicField, OfAnEmitterThatMovesTheMarchThatLosesMostIsKept) {
+  SteepGrounds kept;
+  keepSteepest(kept, {{"a", {marchOver(8, 10, 13)}}, {"b", {marchOver(8, 0, 3)}}});
+  keepSteepest(kept, {{"a", {marchOver(8, 350, 3)}}});
+  keepSteepest(kept, {{"a", {marchOver(8, 20, 13)}}});
+  ASSERT_EQ(kept.size(), 2u);
+  ASSERT_EQ(kept["a"].size(), 1u);
+  EXPECT_EQ(kept["a"][0].max_angle_deg, 3);
+  EXPECT_THAT(steepGroundWarnings(kept), ::testing::SizeIs(2));
+}
+
+TEST(ParabolicField, TrialsOfOtherAnglesHaveTheGridOfTheirPlans) {
+  const auto terrain = std::make_shared<const MadeTerrain>(
+      kLatitude_deg, kLongitude_deg, 0.4,
+      [](double east, double) { return 100 + 50 * std::sin(300 * east); });
+  Made made(*around(3e8, 300, {20e3, 20e3, 400}, {20, 20, 4}, 520), terrain.get());
+  const propagation::DomainNeeds needs = propagation::domainNeeds(made.inputs, made.radials);
+  for (const double max_angle_deg : {0.0, 2.0, 9.0}) {
+    made.inputs.emitter.settings.parabolic_equation.max_angle_deg = max_angle_deg;
+    const PePlan plan = planMarch(made.inputs, made.radials, needs),
+                 trial = planWithoutAir(made.inputs, made.radials, needs, 1);
+    EXPECT_EQ(trial.grid.intervals, plan.grid.intervals);
+    EXPECT_EQ(trial.grid.range_step_m, plan.grid.range_step_m);
+    EXPECT_EQ(trial.max_angle_rad, plan.max_angle_rad);
+    EXPECT_EQ(trial.azimuths, plan.azimuths);
+    EXPECT_EQ(trial.ranges, plan.ranges);
+  }
+}
+
+TEST(ParabolicField, SaysThatNoAngleHelps) {
+  propagation::SteepGround cliff = marchOver(50, 200, 20);
+  EXPECT_THAT(propagation::steepGroundWarning({cliff}),
+              ::testing::HasSubstr("no 'max_angle_deg' up to 35 leaves half of it or less"));
+  cliff.with = [](double) { return std::vector<propagation::SteepAzimuth>(); };
+  EXPECT_THAT(propagation::steepGroundWarning({cliff}),
+              ::testing::HasSubstr("the height steps afford no larger 'max_angle_deg'"));
 }
 
 }  // namespace

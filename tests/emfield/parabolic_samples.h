@@ -83,7 +83,7 @@ struct Made {
         radials(radialInputs(station, columns, terrain, pathExtent(station, columns))),
         inputs(pathInputs(scenario, scenario.emitters[0], stateOf(scenario, terrain).beam, station, terrain,
                           pathExtent(station, columns))),
-        plan(planMarch(inputs, radials)) {}
+        plan(planMarch(inputs, radials, propagation::domainNeeds(inputs, radials))) {}
 
   static scenario::EmitterState stateOf(const scenario::Scenario& scenario,
                                         const scenario::Terrain* terrain) {

@@ -14,6 +14,7 @@
 #include "emfield/ground/ground_posts.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
+#include "tests/emfield/made_terrain.h"
 #include "tests/emfield/random_profile.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"
@@ -250,7 +251,49 @@ TEST(PathObstacles, AreTheEarthsBulgeOnlyWhereTheReliefOfTheTerrainIsLower) {
   EXPECT_TRUE(isBulge(500, 0, 5)) << "a plateau";
   EXPECT_TRUE(isBulge(0, 4, 5)) << "low ground";
   EXPECT_FALSE(isBulge(0, 7, 8)) << "a hill, above the ray by the bulge alone";
-  EXPECT_FALSE(isBulge(0, 4, 3)) << "above the ray without the bulge";
+  EXPECT_FALSE(isBulge(0, 5.6, 6)) << "0.4 m below the ray, and the earth alone in sight";
+  EXPECT_FALSE(isBulge(0, 100, 3)) << "far above the ray without the bulge";
+}
+
+TEST(PathObstacles, OfALongPathAreTheEarthWhereAHillAddsLittle) {
+  const auto isBulge = [](double length_m, double hill_m) {
+    PathProfile profile;
+    profile.effective_earth_radius_m = 8.5e6;
+    profile.range_m = length_m;
+    constexpr double kMast_m = 30, kHill_m = 20e3;
+    for (int i = 0; i <= 300; ++i) {
+      profile.ranges_m.push_back(length_m / 300 * i);
+      const bool is_hill = std::abs(profile.ranges_m[i] - kHill_m) < 500;
+      profile.ground_msl_m.push_back(is_hill ? static_cast<float>(hill_m) : 0.0f);
+      profile.ray_msl_m.push_back(kMast_m - profile.bulge_m(i));
+    }
+    const std::vector<PathObstacle> obstacles = pathObstacles(profile, 0.1);
+    const auto decides = std::find_if(obstacles.begin(), obstacles.end(),
+                                      [](const PathObstacle& obstacle) { return obstacle.decides; });
+    return decides->is_earth_bulge;
+  };
+  EXPECT_TRUE(isBulge(150e3, 0));
+  EXPECT_TRUE(isBulge(150e3, 200)) << "a hill above the straight ray";
+  EXPECT_FALSE(isBulge(40e3, 200)) << "the same hill, with the ends in sight over the sea";
+}
+
+TEST(PathBudget, VerdictSaysThatAModelOnASmoothSurfaceIgnoresTheTerrain) {
+  const auto scenario = whiteMountains(PropagationModel::two_ray);
+  const auto [latitude_deg, longitude_deg] =
+      std::pair(scenario->platforms[0].track[0].position.latitude_deg,
+                scenario->platforms[0].track[0].position.longitude_deg);
+  constexpr double kSide_deg = 0.5;
+  const MadeTerrain terrain(latitude_deg, longitude_deg, kSide_deg, [](double, double north_deg) {
+    return std::abs(north_deg - kSide_deg / 2 - 0.05) < 0.003 ? 300.0 : 0.0;  // a wall 5.6 km to the north
+  });
+  const PathEnd behind{
+      {latitude_deg + 0.1, longitude_deg, 20 + geoidUndulation_m(latitude_deg, longitude_deg)}, 20};
+  const auto verdict = [&](PropagationModel model) {
+    return pathBudget(scenario::snapshotAt(scenario, &terrain, 0), 0, behind, model, &terrain).verdict;
+  };
+  EXPECT_THAT(verdict(PropagationModel::diffraction), ::testing::StartsWith("Blocked: the terrain at 5."));
+  EXPECT_THAT(verdict(PropagationModel::two_ray),
+              ::testing::StartsWith("Not in sight, which 'two_ray' ignores: the terrain at 5."));
 }
 
 TEST(PathBudget, VerdictNamesTheReason) {
@@ -300,6 +343,13 @@ TEST(PathBudget, VerdictOfRadarOnTargetOmitsScanDirection) {
   EXPECT_GT(*at_target.look_pattern_db, -3);
   EXPECT_THAT(at_target.verdict, ::testing::Not(HasSubstr("but the ")));
   EXPECT_THAT(at_target.verdict, HasSubstr("a target there is detected with probability"));
+  scenario->output.interval.kind = scenario::IntervalKind::max_hold;
+  const PathBudget in_interval = budget(south, scenario::RadarAim::scan);
+  ASSERT_TRUE(in_interval.look_pattern_db) << "the scan's best moment";
+  EXPECT_EQ(*in_interval.look_pattern_db, *at_target.look_pattern_db);
+  EXPECT_EQ(in_interval.find("snr_db")->value, at_target.find("snr_db")->value);
+  EXPECT_THAT(in_interval.verdict, ::testing::Not(HasSubstr("but the ")));
+  scenario->output.interval.kind = scenario::IntervalKind::instant;
   // Outside the sector the beam stays at the sector's end.
   const PathBudget beside = budget(north, scenario::RadarAim::target);
   EXPECT_NEAR(*beside.look_pattern_db, -40, 0.1);
@@ -327,9 +377,15 @@ TEST(PathBudget, VerdictNamesJamming) {
   jammer.kind = scenario::EmitterKind::jammer;
   jammer.platform = static_cast<int>(scenario->platforms.size()) - 1;
   scenario->emitters.push_back(jammer);
+  EXPECT_THAT(verdict(), ::testing::ContainsRegex("\\(SNR -?[0-9.]+ dB, J/S 100.0 dB by 'jammer'\\)\\."))
+      << "a fixed beam, which turns to no target";
+  scenario->emitters[0].scan.kind = scenario::ScanKind::rotate;
+  scenario->output.radar_look = scenario::RadarAim::scan;
   EXPECT_THAT(verdict(),
               ::testing::ContainsRegex("\\(SNR -?[0-9.]+ dB where the scan has the beam, J/S -?[0-9.]+ dB by "
                                        "'jammer' with the beam on the target\\)\\."));
+  scenario->emitters[0].scan.kind = scenario::ScanKind::fixed;
+  scenario->output.radar_look = scenario::RadarAim::target;
   const auto scale = [&](std::size_t emitter, const char* key, double wanted_db) {
     const double now_db = budget().find(key)->value;
     scenario->emitters[emitter].power_w *= dbToRatio(wanted_db - now_db);

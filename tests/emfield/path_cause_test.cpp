@@ -19,6 +19,7 @@ PathBudget radarBudget(double snr_db) {
   budget.terms = {{"snr_db", "", snr_db, "dB", ""},
                   {"required_snr_db", "", 13, "dB", ""},
                   {"detection_probability", "", snr_db >= 13 ? 0.9 : 0.1, "", ""}};
+  budget.profile.has_terrain = true;
   return budget;
 }
 PathCause causeOfDetection(const PathBudget& budget) {
@@ -45,20 +46,24 @@ TEST(PathCause, IsTheLargestLossWithoutWhichTheEchoSuffices) {
 TEST(PathCause, IsJammingClutterRangeOrSilenceWhereTheyTakeTheDetectionAway) {
   PathBudget budget = radarBudget(20);
   budget.terms[2].value = 0.01;
-  budget.jamming = {"jammer", 0, 0.9};
+  budget.jamming = {{{"jammer", 30, 0}}, 0.9, {}, 0, {}};
   budget.excess.loss_db = 100;
   EXPECT_EQ(causeOfDetection(budget), PathCause::jamming);
   EXPECT_EQ(decisionText(budget), "Jamming by 'jammer' decides.");
   budget.unheard = "beyond the radar's instrumented range of 5.0 km";
-  EXPECT_EQ(causeOfDetection(budget), PathCause::range);
-  budget.terms.push_back({"jammer_to_signal_db", "", 30, "dB", ""});
-  EXPECT_NE(causeOfDetection(budget), PathCause::range)
-      << "jammed, it would not be detected without the limit";
-  budget.terms.back().value = -20;
-  EXPECT_EQ(causeOfDetection(budget), PathCause::range) << "the echo burns through";
-  budget.terms[0].value = -60;
+  budget.probability_in_any_range = 0.3;
   budget.jamming.unjammed_probability = 0;
+  budget.jamming.unjammed_in_any_range = 0.9;
+  EXPECT_EQ(causeOfDetection(budget), PathCause::range) << "both are to go";
+  EXPECT_EQ(decisionText(budget), "The radar's range limit decides. Jamming by 'jammer' decides then.");
+  budget.probability_in_any_range = 0.6;
+  EXPECT_EQ(causeOfDetection(budget), PathCause::range) << "the echo burns through";
+  EXPECT_EQ(decisionText(budget), "The radar's range limit decides.");
+  budget.probability_in_any_range = 0;
+  budget.terms[0].value = -60;
+  budget.jamming.unjammed_in_any_range = 0;
   EXPECT_EQ(causeOfDetection(budget), PathCause::terrain) << "nor would it be detected without the limit";
+  EXPECT_THAT(decisionText(budget), HasSubstr("dB are missing. The radar's range limit decides then."));
   budget.active = false;
   EXPECT_EQ(causeOfDetection(budget), PathCause::silent);
   budget = radarBudget(20);
@@ -66,6 +71,10 @@ TEST(PathCause, IsJammingClutterRangeOrSilenceWhereTheyTakeTheDetectionAway) {
   budget.terms.push_back({"sclnr_db", "", -5, "dB", ""});
   EXPECT_EQ(causeOfDetection(budget), PathCause::clutter);
   EXPECT_EQ(decisionText(budget), "Clutter decides: echoes of land, sea or rain hide the target.");
+  budget.jamming = {{{"jammer", -3, 0}}, 0.1, PathJamming::WithoutClutterAnd{0.2, 0, 0, 0}, 0, {}};
+  EXPECT_EQ(decisionText(budget),
+            "Clutter decides: echoes of land, sea or rain hide the target. Jamming by 'jammer' decides then: "
+            "J/S -3.0 dB.");
   budget.terms.push_back({"filter_response_db", "", -HUGE_VAL, "dB", ""});
   EXPECT_EQ(decisionText(budget),
             "The filter against clutter decides: it removes the echo of a target of this radial speed.");
@@ -74,24 +83,63 @@ TEST(PathCause, IsJammingClutterRangeOrSilenceWhereTheyTakeTheDetectionAway) {
 TEST(PathCause, IsToldWithTheJammingThatDecidesWithoutIt) {
   PathBudget budget = radarBudget(-50);
   budget.pointing.pattern_db = -45;
-  budget.jamming = {"jammer", 0, 0};
-  budget.terms.push_back({"jammer_to_signal_db", "", 9, "dB", ""});
+  budget.jamming = {{{"jammer", 9, 0}}, 0, PathJamming::WithoutClutterAnd{0, 0, 0, 0.2}, 0, {}};
   EXPECT_EQ(decisionText(budget),
             "Pointing decides: without it the echo is 90.0 dB stronger; 63.0 dB are missing. "
             "Jamming by 'jammer' decides then: J/S 9.0 dB.");
-  budget.terms.back().value = -20;
+  budget.jamming.without_clutter->pointing = 0.9;
   EXPECT_EQ(decisionText(budget),
             "Pointing decides: without it the echo is 90.0 dB stronger; 63.0 dB are missing.");
   budget.pointing.pattern_db = 0;
   budget.excess.loss_db = 40;
-  budget.terms.back().value = 75;
+  budget.jamming.jammers[0].to_signal_db = 75;
   EXPECT_EQ(decisionText(budget),
             "Terrain decides: without it the echo is 80.0 dB stronger; 63.0 dB are missing. "
             "Jamming by 'jammer' decides then: J/S -5.0 dB.")
       << "J/S falls with the echo's loss, to less than the 13 dB that are needed";
-  budget.terms.back().value = 40;
+  budget.terms.push_back({"filter_response_db", "", -20, "dB", ""});
+  EXPECT_EQ(decisionText(budget),
+            "Terrain decides: without it the echo is 80.0 dB stronger; 63.0 dB are missing.")
+      << "nor would it be detected without jamming";
+  budget.terms.pop_back();
+  budget.jamming.without_clutter->terrain = 0.9;
   EXPECT_EQ(decisionText(budget),
             "Terrain decides: without it the echo is 80.0 dB stronger; 63.0 dB are missing.");
+}
+
+TEST(PathCause, NamesTheJammerWithoutWhichTheOthersLeaveTheMostDetection) {
+  PathBudget budget = radarBudget(20);
+  budget.terms[2].value = 0.01;
+  budget.jamming = {{{"blanked", 30, 0.99, 0.02}, {"in the beam", 10, 0, 0.8}}, 0.9, {}, 0, {}};
+  EXPECT_EQ(decisionText(budget), "Jamming by 'in the beam' decides.");
+  budget.jamming.jammers[1].probability_without = 0.4;
+  EXPECT_EQ(decisionText(budget),
+            "Jamming by 'in the beam' decides; the other jammer prevents detection without it as well.");
+  budget.jamming.jammers.push_back({"third", 5, 0, 0.1});
+  EXPECT_EQ(decisionText(budget),
+            "Jamming by 'in the beam' decides; the 2 other jammers prevent detection without it as well.");
+}
+
+TEST(PathCause, CountsClutterAsDetectionDoes) {
+  PathBudget budget = radarBudget(20);
+  budget.terms[2].value = 0.3;
+  budget.terms.push_back({"sclnr_db", "", 14, "dB", ""});
+  budget.terms.push_back({"clutter_correlation_loss_db", "", 6, "dB", ""});
+  const Decision decision = decide(budget, Quantity::detection_probability, 0.5);
+  EXPECT_EQ(decision.cause, PathCause::clutter);
+  // 10^-1.4 - 10^-2 of clutter counts 10^0.6 times: -10 lg(0.01 + 3.981 x 0.02981) = 8.905 dB.
+  EXPECT_NEAR(decision.missing_db, 13 - 8.905, 0.001);
+}
+
+TEST(PathCause, TellsWhatIsMissingWithTheNoiseOfTheJammers) {
+  PathBudget budget = radarBudget(4.1);
+  budget.terms[2].value = 0;
+  budget.jamming = {{{"jammer", 59.7, 0}}, 0, {}, 0, 72.7};
+  EXPECT_EQ(decisionText(budget),
+            "Noise decides: the echo is 8.9 dB too weak, 8.9 dB even in free space on the beam's axis. With "
+            "jamming 72.7 dB are missing.");
+  budget.jamming.missing_db = 8.92;
+  EXPECT_THAT(decisionText(budget), testing::Not(testing::HasSubstr("jamming"))) << "weaker than the noise";
 }
 
 TEST(PathCause, OfSeveralEmittersIsThatOfTheNearestToDetectingWhateverTheirOrder) {
@@ -125,6 +173,20 @@ TEST(PathCause, IsASentenceWithWhatItCostsAndWhatIsMissing) {
   budget.excess.loss_db = 30;
   EXPECT_EQ(decisionText(budget),
             "Terrain decides: without it the echo is 60.0 dB stronger; 23.0 dB are missing.");
+  PathObstacle far_below;
+  far_below.clearance_m = 50;
+  far_below.fresnel_radius_m = 10;
+  far_below.decides = true;
+  budget.obstacles = {far_below};
+  budget.model = propagation::PropagationModel::parabolic_equation;
+  EXPECT_THAT(decisionText(budget), HasSubstr("The loss by 'parabolic_equation' decides: ")) << "a null";
+  budget.obstacles[0].clearance_m = -50;
+  EXPECT_THAT(decisionText(budget), HasSubstr("Terrain decides: "));
+  budget.model = propagation::PropagationModel::two_ray;
+  EXPECT_THAT(decisionText(budget), HasSubstr("The loss by 'two_ray' decides: ")) << "it has no terrain";
+  budget.model = propagation::PropagationModel::diffraction;
+  budget.profile.has_terrain = false;
+  EXPECT_THAT(decisionText(budget), HasSubstr("The loss by 'diffraction' decides: ")) << "the earth's bulge";
   budget.excess.loss_db = 5;
   EXPECT_THAT(decisionText(budget), HasSubstr("23.0 dB too weak, 13.0 dB even in free space"));
   EXPECT_EQ(decisionText(radarBudget(20)), "");

@@ -1,9 +1,10 @@
 // To be preloaded into a program: makes one allocation by `operator new` fail. Counts allocations of
 // EMSCAPE_FAILING_BYTES or more during main(); the EMSCAPE_FAILING_ALLOCATION-th one fails (1, 2, ...; unset:
 // none), or the next one outside GDAL, its libraries and Mesa's driver, which omit results for lack of
-// memory, or crash, and outside the loader of libraries, whose constructors cannot report it. If
-// EMSCAPE_ALLOCATIONS names a file, the count is written into it. malloc() is not affected, since C libraries
-// end the program when it fails.
+// memory, or crash, outside the loader of libraries, whose constructors cannot report it, and outside the
+// ranges of the program's code in EMSCAPE_SPARED_CODE: "BEGIN-END ...", in hexadecimal bytes from its begin.
+// If EMSCAPE_ALLOCATIONS names a file, the count is written into it. malloc() is not affected, since C
+// libraries end the program when it fails.
 #include <dlfcn.h>
 #include <execinfo.h>
 
@@ -25,12 +26,33 @@ std::atomic<long long> failing{0};  ///< 0: none, or it has already failed
 std::size_t least_bytes = 1;
 Main program;
 
-bool isWithinFragileLibrary() {
+/// @param address  in bytes from the begin of the program
+bool isSpared(unsigned long long address) {
+  static const char* const ranges = std::getenv("EMSCAPE_SPARED_CODE");
+  unsigned long long begin = 0, end = 0;
+  int length = 0;
+  for (const char* at = ranges; at != nullptr && std::sscanf(at, "%llx-%llx%n", &begin, &end, &length) == 2;
+       at += length) {
+    if (address >= begin && address < end) return true;
+  }
+  return false;
+}
+
+bool isWithinFragileCode() {
+  static const void* const program_begin = [] {
+    Dl_info found{};
+    dladdr(reinterpret_cast<void*>(program), &found);
+    return found.dli_fbase;
+  }();
   void* frames[128];
   const int count = backtrace(frames, 128);
   for (int n = 0; n < count; ++n) {
     Dl_info found{};
     if (dladdr(frames[n], &found) == 0 || found.dli_fname == nullptr) continue;
+    if (found.dli_fbase == program_begin &&
+        isSpared(static_cast<unsigned long long>(static_cast<char*>(frames[n]) -
+                                                 static_cast<const char*>(program_begin))))
+      return true;
     for (const char* const library :
          {"ld-linux", "libgdal", "libproj", "libnetcdf", "libhdf5", "libLLVM", "swrast_dri"}) {
       if (std::strstr(found.dli_fname, library) != nullptr) return true;
@@ -43,8 +65,7 @@ bool fails(std::size_t bytes) {
   if (bytes < least_bytes || !is_counting.load(std::memory_order_relaxed)) return false;
   const long long number = ++allocations;
   long long first = failing.load(std::memory_order_relaxed);
-  return first != 0 && number >= first && !isWithinFragileLibrary() &&
-         failing.compare_exchange_strong(first, 0);
+  return first != 0 && number >= first && !isWithinFragileCode() && failing.compare_exchange_strong(first, 0);
 }
 
 void* allocate(std::size_t bytes, std::size_t alignment) {

@@ -1,9 +1,10 @@
 """Runs subcommands of emscape with pairs of options drawn at random from their help texts, with usual and odd values.
 
 After each run:
-- the status is one that docs/command-line.md documents (0 to 5), within the time limit;
+- the status is one that docs/command-line.md documents (0 to 5); after the time limit it stops at SIGTERM;
 - a failure has one message, without words of the program's inside;
-- a failure leaves no file under the name of an output, and no unfinished file.
+- a failure leaves no file under the name of an output, and no run an unfinished one;
+- inputs, files beside them, and files of the user, one of them often under the name of an output, are unchanged.
 
 usage: option_pairs.py EMSCAPE SCENARIO_FOLDER [--pairs N] [--seed N] [SUBCOMMAND...]
 """
@@ -13,13 +14,15 @@ import os
 import random
 import re
 import shutil
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 # What each subcommand needs; {q}: a scenario, {l}: one with links, {v}: a series of volumes, {t}: elevations, {r}: a recording,
-# {w}: a script of the window, {s}: a study, {m}: measured paths, {o}: an output.
+# {w}: a script of the window, {s}: a study, {m}: measured paths, {p}: a free port, {o}: a folder of outputs.
 BASE = {
     "simulate": "simulate {q} -o {o}/s --set region.dims=[8,8,4] --set duration_s=1",
     "render": "render {q} -o {o}/a.png --size 64x48 --times 0 --set region.dims=[8,8,4]",
@@ -31,26 +34,47 @@ BASE = {
     "exposure": "exposure {l} --platform drone --times 0:4:1 -o {o}/e.png",
     "info": "info {v}",
     "validate": "validate {q}",
-    "terrain": "terrain {t}",
+    "terrain": "terrain {l}",
     "blockage": "blockage {l} --emitter mast --beamwidth 2 --elevation 0 --range 9000 -o {o}/b.nc",
     "import": "import {r} --emitters {r}.emitters.yaml -o {o}/i.yaml",
     "export": "export {q} -o {o}/e.czml",
     "study": "study {s} -o {o}/st --set region.dims=[8,8,4]",
     "check": "check {m} --scenario {q}",
+    "live": "live --base {q} --dis {p} --duration 0.2 -o {o}/live --record {o}/r.pcap",
+    "play": "play {r} --dis-out {p} --rate 1000000",
+    "bench field": "bench field {q} --repeats 1 --set region.dims=[8,8,4]",
+    "bench cells": "bench cells {q} --mesh terrain:2 --size 64x48 --frames 0 --set region.dims=[8,8,4]",
+    "bench coverage": "bench coverage {q} --cell 4000 --repeats 1",
+    "bench render": "bench render {q} --size 64x48 --frames 1 --set region.dims=[8,8,4]",
+    "bench reconstruction": "bench reconstruction {q} --size 64x48 --frames 1 --set region.dims=[8,8,4]",
+    "bench models": "bench models --repeats 1",
+    "bench march": "bench march --cases sea-auto --azimuths 1 --repeats 1",
     "view": "view {q} --backend cpu --script {w}",
 }
 # Global options, those that wait for a network or a person, and those that start other machinery.
-LEFT_OUT = {"--help", "--version", "--licences", "--realtime", "--verify", "--quiet", "--duration", "--serve", "--submit"}
+LEFT_OUT = {"--help", "--version", "--licences", "--realtime", "--verify", "--quiet", "--duration", "--serve", "--submit", "--acmi-server"}
+# A file of the user in the folder of outputs, and its content.
+MINE, MINE_TEXT = "{o}/mine.png", "of the user\n"
+# Options with which the file of the user is replaced.
+REPLACING = {"blockage", "export", "import", "live"}
 VALUES = {
     "FLOAT": ["1", "0", "-1", "1e-300", "1e300", "nan", "inf", "0x10", "1_000", "", "52.5"],
     "INT": ["1", "0", "-1", "3", "2147483648", "1e9", "x", ""],
+    "BOOLEAN": ["on", "off", "1", "x", ""],
     "UINT": ["1", "0", "-1", "3", "4294967296", "x"],
     "TEXT": ["", "-", "radar", "mast", "0", "0:1:1", "1:0:1", "agl:100", "msl:9000", "64x48", "32767x32767", "0x0", "-1x5", "nan:1",
-             "{o}/out.png", "{o}/out.csv", "{o}/out.json", "{o}", "{q}", "/dev/null", "/dev/full", "{o}/no/such", "local", "EPSG:4326",
+             MINE, "{o}/out.png", "{o}/out.csv", "{o}/out.json", "{o}", "{q}", "/dev/null", "/dev/full", "{o}/no/such", "local", "EPSG:4326",
              "52,5,1000", "bbox:-180,-60,180,60", "power_density_dbwm2", "png", "a" * 5000, "\u0661", "%d", "$(true)", "--", "terrain:2"],
 }
-# Drawn half of the time.
+# Drawn most of the time.
 USUAL = {
+    "FLOAT": ["1", "0.5", "2"], "INT": ["1", "3"], "UINT": ["1", "3"], "BOOLEAN": ["on", "off"],
+    "--camera": ["orbit:azimuth_deg=30", "lookat:eye_x_m=1,target_x_m=5"], "--plane": ["horizontal:altitude_m=500", "vertical:bearing_deg=20"],
+    "--range-rings": ["radar:spacing_m=2000"], "--map-layer": ["100", "off"], "--scenario": ["{q}"], "--base": ["{q}"], "--drape": ["land-cover"],
+    "--interface": ["127.0.0.1"], "--coverage": ["agl:100"], "--follow": ["mast"], "--volume": ["{o}/d.vdb", "{o}/d.vti"], "--areps": ["{o}/areps"],
+    "--set-b": ["emitters.radar.power_w=5"], "--part": ["1/2", "any"], "--slurm": ["{o}/job.sh"], "--columns": ["frequency_mhz=100"],
+    "--where": ["loss_db>=115"], "--region": ["52,5,30"], "--terrain": ["{t}"], "--only": ["*"], "--picture": ["{o}/p.png"], "--models": ["horizon,itm"],
+    "--emitters": ["radar", "on"], "--record": ["{o}/rec.pcap"], "--target": ["drone"], "--receiver": ["handset"], "--look": ["fog", "scan"],
     "--set": ["emitters.radar.power_w=5", "region.dims=[9,8,4]", "emitters.transmitter=null", "output.floor=-100"],
     "--compare": ["original", "{q}"], "--times": ["0", "0:1:1", "1"], "--time": ["0", "1"], "--range": ["-100:0"], "--size": ["64x48"],
     "--quantity": ["power_density_dbwm2", "detection_probability"], "--mesh": ["terrain:2"], "--heights": ["agl:100", "msl:500"],
@@ -58,9 +82,7 @@ USUAL = {
     "--crs": ["local", "utm"], "--cell": ["4000"], "--products": ["covered", "value"], "--threshold": ["-90"], "--save-state": ["{o}/a.view.json"],
     "--emitter": ["radar"], "--azimuths": ["0:90:45"], "--range-m": ["9000"], "--to": ["52.05,5.05,100"], "--model": ["free_space"],
 }
-# Of subcommands with few options of their own, global ones are drawn, too.
-GLOBAL = [("--json", ""), ("--threads", "INT"), ("--backend", "TEXT:{auto,cpu}")]
-FEW = 6
+GLOBAL = [("--json", ""), ("--threads", "INT"), ("--backend", "TEXT:{auto,cpu}"), ("--devices", "TEXT")]
 # Keys of the scenarios, to which the odd values are given by --set.
 PATHS = ["region.dims", "region.size_m", "region.origin.latitude_deg", "duration_s", "step_s", "epoch", "name", "terrain",
          "terrain.files", "platforms.mast.position", "platforms.mast.position.height_agl_m", "emitters.radar.scan", "emitters.radar.antenna",
@@ -69,9 +91,11 @@ PATHS = ["region.dims", "region.size_m", "region.origin.latitude_deg", "duration
          "ground", "bands", "targets", "receivers", "emitters", "emitters.none.power_w", "", "a.b.c.d"]
 ODD = ["{}", "[]", "null", "1e400", "[1, 2, 3]", "[[0, 1]]", "{kind: raster, bars: 1000}", "{kind: mean, seconds: 1e9}", "{a: &a [*a]}",
        "{file: /dev/zero}", "{kind: soundings, file: {q}}", "{pattern: file, file: {q}}", "parabolic_equation", "[nan]", "'", "\n", "[65535, 65535, 2]"]
-OPTION = re.compile(r"^  +(?:-\w,\s*)?(--[a-z0-9-]+)((?: (?:TEXT|FLOAT|INT|UINT))?(?::\{[^}]*\})?)", re.MULTILINE)
-INSIDE = re.compile(r"std::|terminate called|what\(\)|\.cpp\b|_ZN|pthread|SQLite|basic_string|vector::|bad_alloc|json\.exception|\bassert", re.I)
-TIME_LIMIT_S = 60
+OPTION = re.compile(r"^  +(?:-\w,\s*)?(--[a-z0-9-]+)((?: (?:TEXT|FLOAT|INT|UINT|BOOLEAN))?(?::\{[^}]*\})?)", re.MULTILINE)
+INSIDE = re.compile(
+    r"(std|emscape|YAML|nlohmann|CLI|tbb|openvdb|vector)::|terminate called|what\(\)|\.(cpp|cc|h):\d|\.cpp\b|_ZN|pthread|SQLite|basic_string|"
+    r"bad_alloc|json\.exception|\bassert|\bGDAL|\bPROJ\b|\bproj_|\bOGR|\bH5[A-Z]|\bNC_|\berrno\b|0x[0-9a-f]{6}", re.I)
+TIME_LIMIT_S = 20
 STOP_LIMIT_S = 5
 STUDY = """schema_version: 1
 name: pairs
@@ -95,7 +119,7 @@ def is_unfinished_record(path):
 
 
 def options_of(emscape, subcommand):
-    text = subprocess.run([emscape, subcommand, "--help"], capture_output=True, text=True, check=True).stdout
+    text = subprocess.run([emscape, *subcommand.split(), "--help"], capture_output=True, text=True, check=True).stdout
     return sorted({(name, kind.strip()) for name, kind in OPTION.findall(text) if name not in LEFT_OUT})
 
 
@@ -105,35 +129,40 @@ def drawn(option, random_):
         return [name]
     if name == "--set" and random_.random() < 0.5:
         return [name, random_.choice(PATHS) + "=" + random_.choice(ODD + VALUES["TEXT"] + VALUES["FLOAT"])]
-    if name in USUAL and random_.random() < 0.5:
-        return [name, random_.choice(USUAL[name])]
-    choices = re.findall(r"[\w.-]+", kind[kind.find("{"):]) if "{" in kind else []
-    return [name, random_.choice(choices + ["x"] if choices else VALUES[kind.split(":")[0]])]
+    type_name = kind.split(":")[0]
+    choices = re.findall(r"[\w.-]+", kind[kind.find("{"):]) if "{" in kind else USUAL.get(name) or USUAL.get(type_name)
+    return [name, random_.choice(choices if choices and random_.random() < 0.7 else VALUES[type_name])]
 
 
-def faults_of(done, folder):
+def faults_of(done, folder, mine, may_replace):
     errors = [line for line in done.stderr.splitlines() if line.startswith(("emscape: error:", "emscape-view: error:"))]
-    if done.returncode not in range(6):
+    if done.returncode not in [*range(6), 128 + signal.SIGTERM]:
         yield f"status {done.returncode}"
     if done.returncode in (1, 2, 3, 4) and len(errors) != 1 and not re.search(r"error:|: \"error\"", done.stdout):
         yield f"{len(errors)} messages of an error"
     if (found := INSIDE.search(done.stderr)) is not None:
         yield f"'{found[0]}' in a message"
-    left = [
-        str(path.relative_to(folder))
-        for path in folder.rglob("*")
-        if path.is_file() and not is_unfinished_record(path)
-    ]
-    if done.returncode in (1, 2, 3, 4) and left and "finished files are kept" not in done.stderr:
-        yield f"left {', '.join(left[:3])}"
+    for path in mine:
+        if not may_replace and (path.is_symlink() or not path.is_file() or path.read_text(errors="replace") != MINE_TEXT):
+            yield f"a file of the user is changed: {path.name}"
+    left = [path for path in folder.rglob("*") if path not in mine and (path.is_file() or ".part-" in path.name)]
+    failed = done.returncode not in (0, 5) and "finished files are kept" not in done.stderr
+    names = [str(path.relative_to(folder)) for path in left if ".part-" in path.name or (failed and not is_unfinished_record(path))]
+    if names:
+        yield f"left {', '.join(names[:3])}"
+
+
+def inputs_of(work):
+    """What would tell that a file among the inputs is changed, new or gone."""
+    return {path: (path.stat().st_mtime_ns, path.stat().st_size, path.stat().st_ino) for path in work.rglob("*") if path.is_file()}
 
 
 def ended(command, folder):
-    """The process of the command, ended, and whether it was stopped because it took too long."""
+    """The process of the command, ended; stopped if it takes too long."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", cwd=folder) as process:
         try:
             stdout, stderr = process.communicate(timeout=TIME_LIMIT_S)
-            return subprocess.CompletedProcess(command, process.returncode, stdout, stderr), False
+            return subprocess.CompletedProcess(command, process.returncode, stdout, stderr)
         except subprocess.TimeoutExpired:
             process.terminate()
         try:
@@ -141,7 +170,7 @@ def ended(command, folder):
         except subprocess.TimeoutExpired:
             process.kill()
             stdout, stderr = process.communicate()
-        return subprocess.CompletedProcess(command, process.returncode, stdout, stderr), True
+        return subprocess.CompletedProcess(command, process.returncode, stdout, stderr)
 
 
 def main():
@@ -152,45 +181,68 @@ def main():
     parser.add_argument("--pairs", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_intermixed_args()
+    given.emscape = os.path.abspath(given.emscape)
     failed = 0
-    with tempfile.TemporaryDirectory() as work:
-        work = Path(work)
-        scenarios = work / "scenarios"  # a copy: -o may name a scenario, which is then replaced as any file that is named
+    with tempfile.TemporaryDirectory() as root:
+        root = Path(root)
+        work = root / "inputs"
+        scenarios = work / "scenarios"
         shutil.copytree(given.scenarios, scenarios)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as unused:
+            unused.bind(("127.0.0.1", 0))
+            port = unused.getsockname()[1]
         names = {"q": scenarios / "quick.yaml", "l": scenarios / "links.yaml", "v": work / "volumes",
                  "t": scenarios / "data" / "jacksboro.tif", "r": scenarios / "recordings" / "jamming.pcap", "w": work / "script.jsonl",
-                 "s": work / "study.yaml", "m": work / "paths.csv", "o": "{o}"}
+                 "s": work / "study.yaml", "m": work / "paths.csv", "p": port}
         names["s"].write_text(STUDY)
         names["m"].write_text(PATHS_MEASURED)
         names["w"].write_text('{"do": "wait_frame"}\n{"do": "quit", "edits": "discard"}\n')
-        subprocess.run([given.emscape, "-q", *BASE["simulate"].format(**{**names, "o": work}).split()], check=True)
+
+        def command_of(words, out):
+            for key, value in {**names, "o": out}.items():
+                words = [word.replace("{" + key + "}", str(value)) for word in words]
+            return [given.emscape, "-q", *words]
+
+        subprocess.run(command_of(BASE["simulate"].split(), work), check=True)
         (work / "s").rename(work / "volumes")
-        for subcommand in given.subcommands or [name for name in BASE if name != "view" or "DISPLAY" in os.environ]:
+        inputs = inputs_of(work)
+        has_bench = Path(given.emscape).with_name("emscape-bench").exists()
+        drawn_from = [name for name in BASE if (name != "view" or "DISPLAY" in os.environ) and (has_bench or not name.startswith("bench"))]
+        for subcommand in given.subcommands or drawn_from:
             random_ = random.Random(f"{given.seed} {subcommand}")
-            options = [option for option in options_of(given.emscape, subcommand) if option[0] not in BASE[subcommand].split()]
-            if len(options) < FEW:
-                options += GLOBAL
+            options = [option for option in options_of(given.emscape, subcommand) + GLOBAL if option[0] not in BASE[subcommand].split()]
+            out = root / "out"
+            out.mkdir()
+            done = ended(command_of(BASE[subcommand].split(), out), out)
+            if done.returncode != 0:
+                sys.exit(f"{subcommand} fails without further options: {done.stderr}")
+            outputs = sorted(path.relative_to(out) for path in out.rglob("*") if path.is_file())
             statuses = {}
             for number in range(given.pairs):
-                out = work / f"{subcommand}{number}"
-                out.mkdir()
+                shutil.rmtree(out)
+                mine = [Path(MINE.format(o=out))]
+                if outputs and random_.random() < 0.25:
+                    mine.append(out / random_.choice(outputs))
+                for path in mine:
+                    path.parent.mkdir(parents=True, exist_ok=True)
+                    path.write_text(MINE_TEXT)
                 words = BASE[subcommand].split()
-                for option in random_.sample(options, 2):
+                pair = random_.sample(options, 2) if random_.random() < 0.9 else 2 * [random_.choice(options)]
+                for option in pair:
                     words += drawn(option, random_)
-                command = [given.emscape, "-q"]
-                for word in words:
-                    for key, path in names.items():
-                        word = word.replace("{" + key + "}", str(out if key == "o" else path))
-                    command.append(word)
-                done, stopped = ended(command, out)
+                done = ended(command_of(words, out), out)
                 statuses[done.returncode] = statuses.get(done.returncode, 0) + 1
-                faults = list(faults_of(done, out)) if not stopped else [f"not within {TIME_LIMIT_S} s, then status {done.returncode}"]
+                may_replace = subcommand in REPLACING and "--force" in words
+                faults = list(faults_of(done, out, mine, may_replace))
+                before, inputs = inputs, inputs_of(work)
+                if inputs != before:
+                    faults.append(f"inputs are changed: {[path.name for path, _ in set(inputs.items()) ^ set(before.items())]}")
                 for fault in faults:
                     failed += 1
-                    print(f"{fault}: {' '.join(word if len(word) < 200 else word[:20] + '...' for word in command[1:])}", flush=True)
-                subprocess.run(["rm", "-rf", str(out)], check=True)
-                for name in ("quick.yaml", "links.yaml"):
-                    shutil.copyfile(given.scenarios / name, scenarios / name)
+                    in_way = "".join(f" (in the way: {path.relative_to(out)})" for path in mine[1:])
+                    print(f"{fault}: {' '.join(word if len(word) < 200 else word[:20] + '...' for word in words)}{in_way}")
+                    print("   ", *[line[:300] for line in done.stderr.splitlines() if "warning:" not in line][-2:], sep="\n    ", flush=True)
+            shutil.rmtree(out)
             print(f"{subcommand}: {given.pairs} pairs of {len(options)} options; statuses {dict(sorted(statuses.items()))}", flush=True)
     sys.exit(1 if failed else 0)
 

@@ -170,6 +170,21 @@ TEST_F(Autosave, WhatWasFoundIsNotReplacedUntilItIsAdoptedOrDiscarded) {
   EXPECT_FALSE(fs::exists(autosaveFileOf(input, 2)));
 }
 
+TEST_F(Autosave, WhatWasStoredStaysWhereWhatWasFoundIsAdopted) {
+  const std::string input = quickScenario(folder_);
+  ViewState state;
+  state.time_s = 3;
+  OtherProgram(input, state).end();
+  ASSERT_TRUE(saves_.find(input));
+  for (const double time_s : {4.0, 5.0}) {
+    state.time_s = time_s;
+    saves_.keep(input, state);
+    saves_.adopt(input);
+  }
+  saves_.keep(input, {});
+  EXPECT_EQ(readViewState(autosaveFileOf(input).string()).time_s, 5);
+}
+
 TEST_F(Autosave, AFileThatCannotBeLockedIsAnErrorAndNotAnotherProgram) {
   const std::string input = quickScenario(folder_);
   OtherProgram(input, {}).end();

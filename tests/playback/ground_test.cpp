@@ -1,10 +1,12 @@
 #include "playback/frames/ground.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/log.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "playback/frames/ground_marks.h"
 #include "playback/pictures/scenery.h"
@@ -16,6 +18,7 @@ namespace emscape::playback::test {
 namespace {
 
 using render::GroundKind;
+using ::testing::HasSubstr;
 
 /// quick.yaml over a terrain of 0.5 x 0.5 degrees.
 LoadedScenario overTerrain(const TemporaryFolder& folder,
@@ -182,6 +185,35 @@ TEST(GroundMarks, PlacesAreCutAtTheSidesOfTheBox) {
   EXPECT_NEAR(marks.lines[0].points_m.front().x, -10000, 1e-6);
   EXPECT_NEAR(marks.lines[0].points_m.back().x, 10000, 1e-6);
   EXPECT_TRUE(marks.lines[1].is_area);
+}
+
+TEST(GroundMarks, PlacesOutsideAreToldWithTheNearestThree) {
+  const TemporaryFolder folder;
+  const LoadedScenario scene = loadScenarioWithTerrain(quickScenario(folder));
+  const MarkedPlane plane = markedPlane(gridOf(scene), nullptr, &scene);
+  using Place = scenario::Place;
+  const auto point = [](const std::string& name, double latitude_deg, double longitude_deg = 5) {
+    return Place{Place::Kind::point, name, {{{latitude_deg, longitude_deg, 0}}}};
+  };
+  const Place inside = point("inside", 52), outside = point("o", 53), exchanged = point("exchanged", 5, 52),
+              through{Place::Kind::line, "through", {{{52, 4, 0}, {52, 6, 0}}}};
+  const auto toldOf = [&](const std::vector<Place>& places) {
+    std::string told;
+    setLogSink([&](LogLevel level, const std::string& message) {
+      told += (level == LogLevel::warning ? "warning: " : "") + message;
+    });
+    tellPlacesOutside("p.csv", places, plane, &scene.scenario->region);
+    setLogSink({});
+    return told;
+  };
+  EXPECT_EQ(toldOf({inside, through}), "");
+  EXPECT_EQ(toldOf({outside}), "warning: p.csv: none of its places is in the area, so that none is drawn");
+  EXPECT_THAT(toldOf({exchanged}), HasSubstr("perhaps "));
+  EXPECT_EQ(toldOf({inside, point("near", 52.0991)}),
+            "p.csv: 1 of 2 places is outside of the area, and not drawn: 'near', 1.03 km away");
+  EXPECT_EQ(toldOf({outside, point("b", 52.21), inside, point("", 52.15), point("c", 52.3)}),
+            "p.csv: 4 of 5 places are outside of the area, and not drawn: one without a name, 6.69 km away; "
+            "'b', 13.4 km away; 'c', 23.4 km away; ...");
 }
 
 }  // namespace

@@ -148,6 +148,11 @@ TEST(PictureSink, WritesOnePngOrANumberedFolder) {
   const auto several = makePictureSink(folder / "frames", "a/b", 2, picture.size, 10, "");
   for (const int number : {1, 2}) several->add(number, picture, 1);
   several->finish();
+  folder.write("frames/a_b_0002.png", "mine");
+  EXPECT_THAT(errorOf([&] { makePictureSink(folder / "frames", "a/b", 2, picture.size, 10, ""); }),
+              testing::HasSubstr("a_b_0002.png: is a file that emscape did not write"));
+  makePictureSink(folder / "frames", "a/b", 2, picture.size, 10, "", Replaces::any)->add(2, picture, 1);
+  EXPECT_NE(readFile(folder / "frames/a_b_0002.png"), "mine");
   EXPECT_TRUE(std::filesystem::exists(folder / "frames/a_b_0001.png"));
   EXPECT_TRUE(std::filesystem::exists(folder / "frames/a_b_0002.png"));
   EXPECT_THAT(errorOf([&] { makePictureSink(folder / "one.png", "made", 2, picture.size, 10, ""); }),

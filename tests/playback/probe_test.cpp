@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <random>
 
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/playback/frames/scene.h"
 #include "emscape/scenario/model/snapshot.h"
@@ -70,6 +71,10 @@ TEST(Probe, DescribesValuesInWords) {
   EXPECT_EQ(textAt({-5, 0, 0}), "outside the volume's box");
   EXPECT_EQ(textAt({5, 5, 5}), "masked");
   EXPECT_EQ(textAt({999, 999, 999}), "no field above the floor of -1 dB");
+  volume.info.unit = "";
+  EXPECT_EQ(textAt({999, 999, 999}), "at most -1");
+  volume.info.floor = 0;
+  EXPECT_EQ(textAt({999, 999, 999}), "0") << "a probability";
   const ProbeReading reading = probe({5, 5, 5}, volume, nullptr, nullptr);
   EXPECT_FALSE(reading.height_msl_m);
   EXPECT_TRUE(reading.emitters.empty());
@@ -312,6 +317,18 @@ TEST(Probe, HasHeightsOverRealGroundAndReportsPositionsBelowIt) {
     EXPECT_NEAR(reading.emitters[e].budget->find("power_density_dbwm2")->value,
                 budget.find("power_density_dbwm2")->value, 1e-6);
   }
+  auto marched = std::make_shared<scenario::Scenario>(*solved.input.scenario);
+  marched->emitters[0].propagation.model = propagation::PropagationModel::parabolic_equation;
+  marched->emitters[0].propagation.parabolic_equation.max_angle_deg = 3;
+  const double latitude_deg = 36.36, longitude_deg = -84.35;
+  const double height_msl_m = solved.input.terrain->heightMsl_m(latitude_deg, longitude_deg) + 50;
+  const Vec3d low = GeoFrame(grid.frame)
+                        .toLocal({latitude_deg, longitude_deg,
+                                  height_msl_m + geoidUndulation_m(latitude_deg, longitude_deg)});
+  const ProbeReading over_steep = probe(low, *solved.volume, marched, solved.input.terrain.get());
+  ASSERT_TRUE(over_steep.emitters[0].budget) << over_steep.emitters[0].refusal;
+  EXPECT_THAT(over_steep.emitters[0].budget->warnings,
+              ::testing::Contains(HasSubstr("of the length of its marches")));
 }
 
 TEST(Probe, PositionAtAnEmitterIsRefusedForThatEmitterOnly) {

@@ -200,13 +200,19 @@ TEST_F(SeriesWriter, KillBetweenNewRangeOfFileAndItsRecordIsRepaired) {
   EXPECT_TRUE(volumes("s") == volumes("whole"));
 }
 
-TEST_F(SeriesWriter, MissingEmptyOrReplacedFilesAreComputedAgain) {
+TEST_F(SeriesWriter, MissingOrEmptyFilesAreComputedAgainAndReplacedOnesStay) {
   write(5, into("whole"));
   write(5, into("s"));
   fs::remove(*this / "s/quick_0001.vdb");
   writeFile(*this / "s/quick_0002.raw", "");
   fs::copy_file(*this / "s/quick_0005.vti", *this / "s/quick_0003.vti", fs::copy_options::overwrite_existing);
   fs::remove(*this / "s/quick_0004.nvdb.json");
+  const auto before = volumes("s");
+  EXPECT_THAT(
+      errorOf([&] { write(5, into("s", allFormats(), Existing::resume)); }),
+      HasSubstr("quick_0003.vti: is a file that emscape did not write, or has no record of having written"));
+  EXPECT_TRUE(volumes("s") == before) << "nothing is lost";
+  fs::remove(*this / "s/quick_0003.vti");
   FieldSeries field = series(5);
   const SeriesResult resumed = writeSeries(field, into("s", allFormats(), Existing::resume));
   EXPECT_EQ(resumed.steps_computed, 4);
@@ -259,6 +265,7 @@ TEST_F(SeriesWriter, ADamagedJournalIsAnErrorThatNamesTheLine) {
   write(3, into("s", {"raw"}));
   const std::string whole = readFile(*this / "s/series.steps");
   const std::size_t second = whole.find('\n') + 1;
+  std::string changed = whole.substr(second, whole.find('\n', second) - second);
   const std::vector<std::pair<std::string, std::string>> damages{
       {"{\"step\": 2", "no JSON"},
       {"{\"step\":99,\"range\":[null],\"stored_range\":[null],\"files\":[]}", "step 99 is outside 1..3"},
@@ -267,6 +274,7 @@ TEST_F(SeriesWriter, ADamagedJournalIsAnErrorThatNamesTheLine) {
       {"{\"step\":2,\"range\":[[3,1]],\"stored_range\":[null],\"files\":[]}", "minimum exceeds"},
       {"[]", ""},
       {"", "no JSON"},
+      {changed.insert(changed.find("\"bytes\":") + 8, "1"), "it was changed since it was written"},
   };
   for (const auto& [line, cause] : damages) {
     std::string damaged = whole;
@@ -284,6 +292,16 @@ TEST_F(SeriesWriter, ADamagedStateIsAnErrorThatNamesTheFile) {
   writeFile(*this / "s/series.json", whole.substr(0, whole.find("\"recipe\"")));
   EXPECT_THAT(errorOf([&] { write(2, into("s", {"raw"}, Existing::resume)); }),
               AllOf(HasSubstr("series.json:"), HasSubstr("not valid JSON")));
+  writeFile(*this / "s/series.json", "");
+  EXPECT_THAT(errorOf([&] { write(2, into("s", {"raw"}, Existing::resume)); }),
+              HasSubstr("not the state of a series; use another folder"));
+  fs::remove(*this / "s/series.json");
+  fs::create_directories(*this / "s/series.json");
+  EXPECT_THAT(
+      errorOf([&] { write(2, into("s", {"raw"}, Existing::resume)); }),
+      HasSubstr("series.json: cannot read: it is a folder: not the state of a series; use another folder"));
+  fs::remove(*this / "s/series.json");
+  writeFile(*this / "s/series.json", whole);
   for (const char* key : {"format_version", "complete", "ranges", "recipe"}) {
     json damaged = json::parse(whole);
     damaged.erase(key);
@@ -291,6 +309,10 @@ TEST_F(SeriesWriter, ADamagedStateIsAnErrorThatNamesTheFile) {
     EXPECT_THAT(errorOf([&] { write(2, into("s", {"raw"}, Existing::resume)); }),
                 AllOf(HasSubstr("series.json"), HasSubstr(key)));
   }
+  writeFile(*this / "s/series.json", "mine\n");
+  EXPECT_THAT(errorOf([&] { write(2, into("s", {"raw"}, Existing::replace)); }),
+              HasSubstr("a file that emscape did not write"));
+  EXPECT_EQ(readFile(*this / "s/series.json"), "mine\n");
 }
 
 TEST_F(SeriesWriter, AFolderThatHoldsASeriesIsRefusedResumedOrReplaced) {
@@ -336,12 +358,46 @@ TEST_F(SeriesWriter, ReplacingKeepsFilesThatAForeignRecordNames) {
   const std::string names[] = {"thesis.txt", "photo_0001.png", "../outside_0001.raw"};
   for (const std::string& name : names) {
     writeFile(*this / "s/" + name, "mine");
-    listed += R"({"name":")" + name + R"(","bytes":4,"crc32":1},)";
+    listed += R"({"name":")" + name + R"(","bytes":4,"crc32":1772671891},)";  // of "mine"
   }
   const std::string list = R"("files":[)";
-  writeFile(*this / "s/series.steps", record.insert(record.find(list) + list.size(), listed));
+  record.insert(record.find(list) + list.size(), listed);
+  writeFile(*this / "s/series.steps", record);
+  EXPECT_THAT(errorOf([&] { write(1, into("s", {"raw"}, Existing::replace)); }),
+              HasSubstr("series.steps:1: is no line that emscape wrote"));
+  record.replace(record.rfind(R"(,"crc32":)"), std::string::npos, "}\n");  // as of earlier versions
+  writeFile(*this / "s/series.steps", record);
   write(1, into("s", {"raw"}, Existing::replace));
   for (const std::string& name : names) EXPECT_EQ(readFile(*this / "s/" + name), "mine") << name;
+}
+
+TEST_F(SeriesWriter, WhatIsInTheWayIsToldBeforeAnyFileIsReplaced) {
+  for (const char* name : {"series.steps", "quick_0003.vti", "quick.pvd"}) {
+    for (const Existing existing : {Existing::resume, Existing::replace}) {
+      fs::remove_all(*this / "s");
+      write(3, into("s", {"vti"}));
+      fs::remove(*this / "s/" + name);
+      fs::create_directory(*this / "s/" + name);
+      const std::map<std::string, std::string> before = contents("s");
+      EXPECT_THAT(errorOf([&] { write(3, into("s", {"vti"}, existing)); }),
+                  AllOf(HasSubstr(name), HasSubstr("is no file")));
+      EXPECT_EQ(contents("s"), before) << name;
+    }
+  }
+  fs::remove_all(*this / "s");
+  write(3, into("s", {"vti"}));
+  fs::remove(*this / "s/series.steps");
+  writeFile(*this / "s/quick_0003.vti", "mine");
+  const std::map<std::string, std::string> before = contents("s");
+  EXPECT_THAT(errorOf([&] { write(3, into("s", {"vti"}, Existing::resume)); }), HasSubstr("quick_0003.vti"));
+  EXPECT_EQ(contents("s"), before);
+}
+
+TEST_F(SeriesWriter, ReplacingRemovesAVolumeWhoseNewRangeIsNotInTheJournal) {
+  write(2, into("s", {"vdb"}));
+  volume::setStoredRange(*this / "s/quick_0002.vdb", {{"power_density_dbwm2", -100, 1}});
+  write(1, into("s", {"vdb"}, Existing::replace));
+  EXPECT_FALSE(fs::exists(*this / "s/quick_0002.vdb"));
 }
 
 TEST_F(SeriesWriter, ReplacingRefusesVolumesThatWouldBeReadWithTheSeries) {
@@ -433,6 +489,39 @@ TEST_F(SeriesWriter, NamesAForeignFileInTheWayAndLeavesIt) {
     fs::remove(file);
   }
   write(2, into("own", {"vdb"}));
+}
+
+TEST_F(SeriesWriter, ResumingAndReplacingRefuseAChangedOrLinkedDescriptionOrListOfFiles) {
+  write(2, into("s", {"vti"}));
+  // As the user would change them: the program reads them as before.
+  const std::pair<std::string, std::string> added[] = {{"series.json", " \n"},
+                                                       {"quick.pvd", "<!-- mine -->\n"}};
+  for (const auto& [name, text] : added) {
+    const std::string file = *this / "s/" + name, moved = *this / name;
+    fs::rename(file, moved);
+    for (const bool is_link : {false, true}) {
+      if (is_link) {
+        fs::create_symlink(moved, file);
+      } else {
+        writeFile(file, readFile(moved) + text);
+      }
+      const auto before = contents("s");
+      for (const Existing existing : {Existing::resume, Existing::replace}) {
+        EXPECT_THAT(
+            errorOf([&] { write(2, into("s", {"vti"}, existing)); }, ErrorCode::usage),
+            AllOf(HasSubstr(name + ": is a " + (is_link ? "link" : "file that emscape did not write")),
+                  HasSubstr("give another output")));
+        EXPECT_TRUE(contents("s") == before && fs::is_symlink(file) == is_link) << name;
+      }
+      fs::remove(file);
+    }
+    fs::rename(moved, file);
+  }
+  write(2, into("s", {"vti"}, Existing::resume));
+  fs::create_directories(*this / "new");
+  fs::create_symlink("nowhere", *this / "new/series.json");
+  EXPECT_THAT(errorOf([&] { write(2, into("new", {"vti"})); }, ErrorCode::usage),
+              AllOf(HasSubstr("series.json: is in the folder"), HasSubstr("move it, or use another folder")));
 }
 
 TEST_F(SeriesWriter, LinksToThemselvesAreOtherEntries) {

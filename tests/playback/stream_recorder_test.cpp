@@ -1,10 +1,13 @@
-// Recordings of streams whose disk becomes full.
+// Recordings of streams.
 #include "playback/stream/stream_recorder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdint>
+#include <filesystem>
+#include <thread>
 #include <vector>
 
 #include "emscape/base/error.h"
@@ -48,6 +51,39 @@ TEST(StreamRecorder, WithoutASingleRecordLeavesNoFile) {
     record(recorder, 200);
   }
   EXPECT_THAT(test::errorOf([&] { recorder.finish(); }, ErrorCode::other), HasSubstr("File too large"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "r.pcap"));
+}
+
+// An exercise cannot be repeated: nothing of it waits for the end.
+TEST(StreamRecorder, HasItsNameFromTheBeginningAndGrowsEachSecond) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "r.pcap";
+  StreamRecorder recorder(file, ".pcap", false);
+  EXPECT_THAT(test::errorOf([&] { StreamRecorder second(file, ".pcap", false); }, ErrorCode::usage),
+              HasSubstr("r.pcap exists"));
+  record(recorder, 1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  recorder.keepUp();
+  EXPECT_EQ(test::readFile(file).size(), 24u + 16 + 28 + 1000) << "as a killed process leaves it";
+  test::writeFile(folder / "mine", "of the user");
+  std::filesystem::rename(folder / "mine", file);
+  record(recorder, 1);
+  recorder.finish();
+  EXPECT_EQ(test::readFile(file), "of the user");
+}
+
+TEST(StreamRecorder, ReplacesAFileByTheFirstRecordAndLeavesNoneWithoutAny) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "r.pcap";
+  { StreamRecorder unused(file, ".pcap", false); }
+  EXPECT_FALSE(std::filesystem::exists(file));
+  test::writeFile(file, "of the user");
+  { StreamRecorder unused(file, ".pcap", true); }
+  StreamRecorder(file, ".pcap", true).finish();
+  EXPECT_EQ(test::readFile(file), "of the user");
+  StreamRecorder recorder(file, ".pcap", true);
+  record(recorder, 100);
+  EXPECT_GT(test::readFile(file).size(), 60000u);
 }
 
 TEST(StreamRecorder, WritesAllOfItsRecords) {

@@ -134,6 +134,26 @@ TEST(DiffractionColumn, FloatColumnOverRealTerrainEqualsEachPathInDouble) {
   EXPECT_LT(largest, 0.002);
 }
 
+// A processor uses one of them.
+TEST(DiffractionColumn, VectorsOf8And16NumbersHaveTheSameLosses) {
+  std::mt19937 random(14);
+  std::vector<float> heights;
+  for (int j = 0; j < 100; ++j) heights.push_back(20.0f * static_cast<float>(j));
+  for (const double relief_m : {0.0, 20.0, 500.0}) {
+    const ProfileData profile = madeUpProfile(random, 300, 40e3, relief_m);
+    ExcessColumn column;
+    column.profile = profile.view();
+    column.height_msl_m = heights.data();
+    column.count = static_cast<int>(heights.size());
+    const DiffractionExcess excess{diffractionModel<float>(parametersAt(1e9)), profile.height_msl_m[0] + 20};
+    std::vector<float> by_8(heights.size(), -1), by_16(heights.size(), -2);
+    excess.fillByLanes(8, column, by_8.data());
+    excess.fillByLanes(16, column, by_16.data());
+    for (std::size_t j = 0; j < heights.size(); ++j) EXPECT_NEAR(by_8[j], by_16[j], 1e-4) << heights[j];
+    EXPECT_GT(by_8[0], relief_m > 0 ? 6.0f : 0.0f) << "a path with a loss";
+  }
+}
+
 TEST(DiffractionColumn, MissingTerrainIsUnknown) {
   std::mt19937 random(13);
   ProfileData profile = madeUpProfile(random, 50, 10e3, 100);

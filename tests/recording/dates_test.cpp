@@ -21,6 +21,13 @@ TEST(Dates, UsualFormsAreTheSameTime) {
   EXPECT_EQ(utcSeconds("2026-05-31T24:00:00Z"), kSix_s - 6 * 3600);
 }
 
+TEST(Dates, HaveAZoneOrNot) {
+  for (const char* text : {"2026-06-01T06:00:00Z", "2026-06-01 06:00:00 +02:00 ", "06:00:00 UTC"})
+    EXPECT_TRUE(hasZone(text)) << text;
+  for (const char* text : {"2026-06-01 06:00:00", "2026-06-01 06:00:00  ", "06:00:00 "})
+    EXPECT_FALSE(hasZone(text)) << text;
+}
+
 TEST(Dates, WhoseDayAndMonthMayBeExchangedNeedTheirOrder) {
   EXPECT_TRUE(needsDateOrder("1/6/2026 06:00:00"));
   EXPECT_FALSE(utcSeconds("1/6/2026 06:00:00"));

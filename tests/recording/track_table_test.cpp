@@ -1,4 +1,5 @@
 // Tables of tracks: what of a table is used, and files in zip files.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -53,6 +54,51 @@ TEST(TrackTable, SignsThatMayBeBetweenThousandsAreRefusedBesideOtherDecimals) {
                         "decimal points ('44.3'); write it without a comma, or with a point"));
   const std::string points = "time;lat;lon;alt_m\n0.000;44.300;-71.6;950.5\n30.000;44.310;-71.6;950.123\n";
   EXPECT_EQ(readAs("s.csv", points).objects.at(0).poses.at(1).height_msl_m, 950.123);
+}
+
+TEST(TrackTable, QuotedCommasAreBetweenThousandsUnlessOthersAreDecimal) {
+  const auto table = [](const std::string& latitude, const std::string& first, const std::string& height) {
+    return fmt::format("time,lat,lon,alt_m\n0,{0},-71.6,{1}\n30,{0}1,-71.6,\"{2}\"\n", latitude, first,
+                       height);
+  };
+  for (const auto& [height, height_m] :
+       {std::pair("1,050", 1050.0), {"1,050.5", 1050.5}, {"12,345", 12345.0}})
+    EXPECT_EQ(readAs("s.csv", table("44.3", "950.5", height)).objects.at(0).poses.at(1).height_msl_m,
+              height_m);
+  for (const std::string& text : {table("44.3", "\"950,5\"", "1,050"), table("44.3", "\"0,5\"", "12,345")}) {
+    EXPECT_THAT(test::errorOf([&] { readAs("s.csv", text); }, ErrorCode::bad_input),
+                HasSubstr("is its comma decimal, or between thousands?"));
+  }
+  EXPECT_THAT(
+      test::errorOf(
+          [] {
+            readAs("s.csv",
+                   "time,lat,lon,alt_m\n0,\"44,3\",\"-71,6\",900\n30,\"44,31\",\"-71,6\",\"1,050\"\n");
+          },
+          ErrorCode::bad_input),
+      HasSubstr("s.csv:3: '1,050': is its comma decimal, or between thousands? '44,3' has a decimal one"));
+}
+
+TEST(TrackTable, ARowWithoutAnEndAndTimesWithoutAZoneAreTold) {
+  const auto notesOf = [](const std::string& header, const std::string& time, const std::string& end) {
+    return readAs("s.csv",
+                  fmt::format("{}\n{},52,5,100\n{},52.001,5,1{}", header, fmt::format(fmt::runtime(time), 0),
+                              fmt::format(fmt::runtime(time), 1), end))
+        .tally.notes;
+  };
+  const std::string header = "time,lat,lon,alt_m";
+  EXPECT_THAT(notesOf(header, "2026-06-01T06:00:0{}Z", "00\n"), testing::IsEmpty());
+  EXPECT_THAT(notesOf(header, "2026-06-01T06:00:0{}Z", ""),
+              testing::ElementsAre(HasSubstr("line 3, a row, has no end: if the file was cut there")));
+  for (const char* const with_zone :
+       {"2026-06-01 08:00:0{}+02:00", "2026-06-01 06:00:0{} UTC", "20260601T06000{}Z"})
+    EXPECT_THAT(notesOf(header, with_zone, "00\n"), testing::IsEmpty()) << with_zone;
+  EXPECT_THAT(notesOf("time_utc,lat,lon,alt_m", "2026-06-01 06:00:0{}", "00\n"), testing::IsEmpty());
+  for (const char* const without : {"2026-06-01 06:00:0{}", "2026-06-01T06:00:0{}.5"})
+    EXPECT_THAT(notesOf(header, without, "00\n"),
+                testing::ElementsAre(HasSubstr("time without a zone: taken as UTC; if it is local, write its "
+                                               "offset with it (2026-06-01 08:00:00+02:00)")))
+        << without;
 }
 
 TEST(TrackTable, DaysOfSpreadsheetsAreRecognisedInTwoRows) {
@@ -177,9 +223,7 @@ TEST(TrackTable, TimesAndNumbersOfSpreadsheetsReceiversAndLoggers) {
   };
   const Recording excel = readAs("s.csv", "sep=;\ntime;lat;lon;alt_m\n0;52,5;5;1.000,5\n9;52,51;5;1000,5\n");
   EXPECT_EQ(excel.objects.at(0).poses.at(0).height_msl_m, 1000.5);
-  const Recording quoted =
-      readAs("s.csv", "time,lat,lon,alt_ft\n0,\"52,123\",5,\"9,843\"\n9,52.2,5,\"9,843\"\n");
-  EXPECT_EQ(quoted.objects.at(0).poses.at(0).latitude_deg, 52.123);
+  const Recording quoted = readAs("s.csv", "time,lat,lon,alt_ft\n0,52.123,5,\"9,843\"\n9,52.2,5,\"9,843\"\n");
   EXPECT_NEAR(quoted.objects.at(0).poses.at(0).height_msl_m, 9843 * 0.3048, 1e-9);
   EXPECT_EQ(readAs("s.csv", "time,lat,lon,alt_m\n20260601060000,52,5,1\n20260601060010,52.01,5,1\n").epoch_ms,
             kSix_ms);

@@ -7,7 +7,9 @@
 
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "render/patterns/reconstruction.h"
+#include "render/scene/ground_layer.h"
 #include "tests/render/random_scene.h"
 #include "tests/support/on_backends.h"
 
@@ -61,6 +63,15 @@ TEST(Cast, SourcePixelsEqualFullCast) {
 
 class Draw : public test::OnBackends {};
 EMSCAPE_ON_BACKENDS(Draw);
+
+TEST(GroundLayer, IsUnknownIfItsMemoryWasPreparedInPartOnly) {
+  GroundLayer layer;
+  Work work;
+  work.stop();
+  const WorkScope scope(&work);
+  EXPECT_THROW(layer.reset({4000, 3000}), Stopped);
+  EXPECT_EQ(layer.size.count(), 0);
+}
 
 TEST_P(Draw, ReportsThatItWasStopped) {
   std::mt19937 random(3);

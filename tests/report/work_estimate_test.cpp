@@ -15,6 +15,7 @@
 #include "emscape/scenario/terrain/terrain.h"
 #include "propagation/registry/model_info.h"
 #include "report/runs/work_report.h"
+#include "report/runs/work_time.h"
 #include "tests/support/files.h"
 #include "tests/support/sanitizers.h"
 #include "tests/support/temporary_folder.h"
@@ -220,6 +221,21 @@ void expectWithinFactor5(unsigned first_seed, int count, double longest_s) {
   setThreadLimit(0);
   EXPECT_EQ(compared, count);
   EXPECT_LE(beyond, count / 20) << "beyond a factor of 5";
+}
+
+TEST(WorkEstimate, CountsStepsAtWhichEmittersAreActive) {
+  const std::string file = test::shippedScenario("quick.yaml");
+  const auto whole = scenario::loadScenario(file);
+  const auto sums_s = [&](const std::string& active) {
+    std::vector<scenario::Edit> edits{{"duration_s", "99"}, {"step_s", "1"}};
+    for (const scenario::Emitter& emitter : whole->emitters)
+      edits.push_back({"emitters." + emitter.name + ".active_s", active});
+    return workTimeOf(*scenario::loadScenario(file, edits), nullptr, {}).sums_s;
+  };
+  const double always_s = sums_s("[[0, 100]]");
+  EXPECT_LT(sums_s("[[10, 11]]"), always_s / 20);
+  EXPECT_GT(sums_s("[[10, 11]]"), always_s / 500);
+  EXPECT_NEAR(sums_s("[[0, 50]]"), always_s / 2, always_s / 20);
 }
 
 TEST(WorkEstimate, IsWithinAFactorOf5OfDrawnScenarios) {

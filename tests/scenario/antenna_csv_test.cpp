@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 
+#include "emscape/base/log.h"
+#include "emscape/scenario/model/target.h"
 #include "scenario/antenna/pattern.h"
 #include "scenario/antenna/pattern_file.h"
 #include "scenario/antenna/shapes.h"
@@ -42,6 +45,38 @@ std::string grid(int step_deg) {
     for (int azimuth = -180; azimuth < 180; azimuth += step_deg) text += gridRow(azimuth, elevation);
   }
   return text;
+}
+
+/// The warnings of a call.
+std::string warningsOf(const std::function<void()>& call) {
+  std::string warnings;
+  setLogSink([&](LogLevel level, const std::string& text) {
+    if (level == LogLevel::warning) warnings += text + "\n";
+  });
+  call();
+  setLogSink({});
+  return warnings;
+}
+
+TEST(CsvTables, TellALastRowWithoutALineEnd) {
+  std::string gains = grid(30);
+  gains.replace(gains.find("attenuation_db"), 14, "gain_dbi");
+  for (const bool is_cut : {false, true}) {
+    const auto text = [&](const std::string& whole) {
+      return whole.substr(0, whole.size() - (is_cut ? 1 : 0));
+    };
+    const TemporaryFile azimuth("azimuth.csv", text(kAzimuthCut)), elevation("elevation.csv", kElevationCut);
+    const TemporaryFile cells("grid.csv", text(grid(30))), table("table.csv", text(gains));
+    const TemporaryFile section("rcs.csv", text("azimuth_deg,rcs_dbsm\n0,10\n90,20\n180,10\n270,20\n"));
+    const auto expectTold = [&](int line, const std::function<void()>& read) {
+      const std::string told = ".csv:" + std::to_string(line) + ":1: a row has no end";
+      EXPECT_EQ(warningsOf(read).find(told) != std::string::npos, is_cut) << told;
+    };
+    expectTold(6, [&] { readCsvCuts(azimuth.path(), elevation.path(), 20); });
+    expectTold(1 + 7 * 12, [&] { readAntenna(cells.path(), 20); });
+    expectTold(1 + 7 * 12, [&] { readAntenna(table.path(), 20); });
+    expectTold(5, [&] { readRcsTable(section.path()); });
+  }
 }
 
 TEST(CsvCuts, AddTheirAttenuations) {

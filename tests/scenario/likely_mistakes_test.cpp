@@ -105,9 +105,135 @@ TEST(LikelyMistakes, AreNotToldOfShippedScenarios) {
     EXPECT_THAT(messagesOf(name, {}),
                 AllOf(Not(HasSubstr("of its power")), Not(HasSubstr("Hz wide, narrower")),
                       Not(HasSubstr("is longer than 'duration_s'")), Not(HasSubstr("faster than any")),
-                      Not(HasSubstr("km outside"))))
+                      Not(HasSubstr("km outside")), Not(HasSubstr("narrower than the voxels"))))
         << name;
   }
+}
+
+/// The scenario of the README's first steps with a radar that stands still.
+std::string narrowBeamOf(std::vector<Edit> edits) {
+  edits.insert(edits.begin(), {{"region.size_m", "[40000, 40000, 4000]"},
+                               {"duration_s", "0"},
+                               {"region.dims", "[80, 80, 40]"},
+                               {"output.quantities", "[detection_probability]"},
+                               {"emitters.radar.scan", "null"},
+                               {"emitters.radar.antenna.beamwidth_az_deg", "1.5"}});
+  return messagesOf("quick.yaml", edits);
+}
+
+TEST(LikelyMistakes, BeamsBetweenTheVoxelsAreToldWithWhatHelps) {
+  const std::string told = narrowBeamOf({});
+  EXPECT_THAT(told, AllOf(HasSubstr("the beam of 'radar', 1.5 deg in azimuth, is narrower than the voxels of "
+                                    "500 m up to 19.1 km"),
+                          HasSubstr("does not turn: 'scan: {kind: rotate, rate_rpm: 12}' and 'output: "
+                                    "{radar_look: target}' have it on each voxel"),
+                          Not(HasSubstr("turns it")), Not(HasSubstr("has the beam on each voxel"))));
+  const std::string before = "'region: {dims: ";
+  const std::size_t from = told.find(before) + before.size();
+  const std::string finer = told.substr(from, told.find(']', from) + 1 - from);
+  EXPECT_THAT(narrowBeamOf({{"region.dims", finer}}), Not(HasSubstr("narrower than the voxels"))) << finer;
+  EXPECT_THAT(narrowBeamOf({{"output.radar_look", "target"}}),
+              HasSubstr("does not turn, also with 'radar_look: target': 'scan: {kind: rotate, rate_rpm: 12}' "
+                        "turns it"));
+  const Edit turning{"emitters.radar.scan", "{kind: rotate, rate_rpm: 12}"};
+  EXPECT_THAT(narrowBeamOf({turning, {"output.radar_look", "target"}}),
+              Not(HasSubstr("narrower than the voxels")));
+  EXPECT_THAT(narrowBeamOf({turning, {"output.quantities", "[power_density_dbwm2]"}}),
+              HasSubstr("'output: {interval: {kind: max_hold, turns: 1}}' has all that it passes"));
+  EXPECT_THAT(
+      narrowBeamOf(
+          {turning, {"output.quantities", "[power_density_dbwm2]"}, {"duration_s", "60"}, {"step_s", "1"}}),
+      Not(HasSubstr("narrower than the voxels")))
+      << "another time has it elsewhere";
+  EXPECT_THAT(narrowBeamOf({turning,
+                            {"output.quantities", "[power_density_dbwm2]"},
+                            {"output.interval", "{kind: max_hold, turns: 1}"}}),
+              Not(HasSubstr("narrower than the voxels")));
+  EXPECT_THAT(
+      narrowBeamOf(
+          {turning, {"output.radar_look", "target"}, {"emitters.radar.antenna.beamwidth_el_deg", "0.5"}}),
+      HasSubstr("0.5 deg in elevation, is narrower than the voxels of 100 m"))
+      << "the beam stays at its elevation";
+  EXPECT_THAT(narrowBeamOf({turning}),
+              HasSubstr("'output: {radar_look: target}' has the beam on each voxel"));
+}
+
+TEST(LikelyMistakes, BeamsBetweenTheVoxelsAreThoseOfRolledPlatformsToo) {
+  const auto rolledBy = [](int roll_deg) {
+    return narrowBeamOf({{"platforms.radar site.attitude", fmt::format("{{roll_deg: {}}}", roll_deg)},
+                         {"emitters.radar.scan", "{kind: fixed, azimuth_deg: 20}"},
+                         {"emitters.radar.antenna.beamwidth_az_deg", "60"},
+                         {"emitters.radar.antenna.beamwidth_el_deg", "0.5"}});
+  };
+  const std::string level = rolledBy(0), rolled = rolledBy(90);
+  EXPECT_THAT(level, AllOf(HasSubstr("0.5 deg in elevation, is narrower than the voxels of 100 m up to"),
+                           HasSubstr("'region: {dims: [80, 80, ")));
+  // Of voxels five times wider than high: 500 m cos(60 deg) is more than 100 m sin(60 deg).
+  EXPECT_THAT(rolledBy(60),
+              HasSubstr("by tilt or roll along the ground, is narrower than the voxels of 500 m"));
+  EXPECT_THAT(rolledBy(5), HasSubstr("0.5 deg in elevation, is narrower than the voxels of 100 m up to"));
+  EXPECT_THAT(rolled,
+              AllOf(HasSubstr("0.5 deg in elevation of the antenna, by tilt or roll along the ground, is "
+                              "narrower than the voxels of 500 m in the whole region"),
+                    HasSubstr(", 40]}' has them no farther"), Not(HasSubstr("rotate"))));
+}
+
+TEST(LikelyMistakes, BlankersThatNeverOpenAndSamplesThatAreNoneAreTold) {
+  const auto jamming = [](std::vector<Edit> edits) {
+    edits.insert(edits.begin(),
+                 {"emitters.search radar.receiver.side_lobe_blanking", "{auxiliary_gain_dbi: 10}"});
+    return messagesOf("jamming.yaml", edits);
+  };
+  EXPECT_THAT(jamming({}), HasSubstr("has no 'waveform' and jams without a pause"));
+  EXPECT_THAT(jamming({{"emitters.stand-off jammer.waveform", "{prf_hz: 1000, pulse_width_s: 1.0e-4}"}}),
+              Not(HasSubstr("without a pause")));
+  EXPECT_THAT(jamming({{"emitters.stand-off jammer.frequency_hz", "1.0e10"}}),
+              Not(HasSubstr("without a pause")))
+      << "it jams no radar";
+  EXPECT_THAT(messagesOf("clutter.yaml", {{"emitters.search radar.clutter.independent_samples", "5000"}}),
+              HasSubstr("more than the"));
+}
+
+TEST(LikelyMistakes, BlankersWithMoreJammersOfPulsesThanAreToldApartAreTold) {
+  const auto with = [](int jammers) {
+    std::string emitters =
+        "[{name: radar, platform: ridge site, kind: radar, frequency_hz: 3.0e9, power_w: 1.0e5, "
+        "antenna: {pattern: gaussian, gain_dbi: 30, beamwidth_az_deg: 2, beamwidth_el_deg: 20}, "
+        "receiver: {noise_figure_db: 4, bandwidth_hz: 1.0e6, side_lobe_blanking: {auxiliary_gain_dbi: 10}}}";
+    for (int n = 0; n < jammers; ++n) {
+      emitters += fmt::format(
+          ", {{name: jammer {}, platform: helicopter, kind: jammer, frequency_hz: 3.0e9, power_w: 1, "
+          "antenna: "
+          "{{pattern: isotropic}}, waveform: {{prf_hz: 1000, pulse_width_s: 1.0e-4}}}}",
+          n);
+    }
+    return messagesOf("jamming.yaml", {{"emitters", emitters + "]"}});
+  };
+  EXPECT_THAT(with(5), HasSubstr("of 5 jammers of pulses the 4 strongest count as such"));
+  EXPECT_THAT(with(4), AllOf(Not(HasSubstr("strongest")), Not(HasSubstr("error"))));
+}
+
+TEST(LikelyMistakes, SignalsThatAreNotAsWideAsTheirPulsesAreToldWithTheWidth) {
+  const auto with = [](std::vector<Edit> edits) {
+    edits.insert(edits.begin(), {"receivers.handset.center_frequency_hz", "3.0e9"});
+    return messagesOf("links.yaml", edits);
+  };
+  EXPECT_THAT(with({}), HasSubstr("the pulses of 'search radar' are 5e+05 Hz wide, but its signal has no "
+                                  "'bandwidth_hz': all its power falls into receiver 'handset', 2.5e+04 Hz"));
+  EXPECT_THAT(messagesOf("links.yaml", {}), Not(HasSubstr("the pulses of"))) << "the handset hears 450 MHz";
+  EXPECT_THAT(with({{"emitters.search radar.bandwidth_hz", "5e+05"}}),
+              AllOf(Not(HasSubstr("the pulses of")), Not(HasSubstr("than pulses of"))))
+      << "the remedy";
+  EXPECT_THAT(with({{"emitters.search radar.bandwidth_hz", "1000"}}),
+              HasSubstr("is 1000 Hz wide, narrower than pulses of 2e-06 s can be"));
+  EXPECT_THAT(with({{"emitters.search radar.clutter", "{land: woods, range_cell_m: 15}"}}),
+              HasSubstr("the pulses of 'search radar' are 9.993e+06 Hz wide"))
+      << "compressed";
+}
+
+TEST(LikelyMistakes, ClutterOfRainWithoutRainIsTold) {
+  EXPECT_THAT(messagesOf("clutter.yaml", {{"atmosphere.rain_mm_h", "0"}}), HasSubstr("but it does not rain"));
+  EXPECT_THAT(messagesOf("clutter.yaml", {}), Not(HasSubstr("does not rain")));
 }
 
 TEST(LikelyMistakes, TheIntervalThatAWarningOffersIsAccepted) {
@@ -197,6 +323,56 @@ TEST(ScenarioWarnings, OfStepsAreThoseForWhichTheScenarioWasRead) {
   EXPECT_THAT(read(ReadFor::chosen_times), Not(testing::Contains(HasSubstr("'step_s'"))));
 }
 
+TEST(ScenarioWarnings, TellOfJammersOnTheRadarsOwnPlatform) {
+  const auto told = HasSubstr(
+      "jammer 'stand-off jammer' is on the platform of radar 'search radar', in its band, and left out "
+      "there");
+  EXPECT_THAT(messagesOf("jamming.yaml", {{"emitters.stand-off jammer.platform", "ridge site"}}), told);
+  EXPECT_THAT(messagesOf("jamming.yaml", {{"emitters.stand-off jammer.platform", "ridge site"},
+                                          {"emitters.stand-off jammer.frequency_hz", "5e9"}}),
+              Not(told));
+  EXPECT_THAT(messagesOf("jamming.yaml", {}), Not(told));
+}
+
+TEST(ScenarioWarnings, TellOfBlinkingBetweenTheSteps) {
+  const auto blinking = [](const char* step_s, const char* interval) {
+    return messagesOf("jamming.yaml", {{"step_s", step_s},
+                                       {"output.quantities", "[detection_probability]"},
+                                       {"output.interval", interval},
+                                       {"emitters.stand-off jammer.blink", "{on_s: 1, off_s: 3}"}});
+  };
+  const auto told = HasSubstr("emitter 'stand-off jammer' switches on and off between the times");
+  EXPECT_THAT(blinking("4", "{kind: instant}"), told);
+  EXPECT_THAT(blinking("1", "{kind: instant}"), Not(told));
+  EXPECT_THAT(blinking("4", "{kind: cumulative}"), Not(told));
+}
+
+TEST(ScenarioWarnings, TellOfWhatIsHeldDuringAnInterval) {
+  const auto over = [](const char* interval, const std::vector<Edit>& more = {}) {
+    std::vector<Edit> edits{{"output.quantities", "[detection_probability]"}, {"output.interval", interval}};
+    edits.insert(edits.end(), more.begin(), more.end());
+    return messagesOf("jamming.yaml", edits);
+  };
+  const std::vector<Edit> turning{{"emitters.stand-off jammer.scan", "{kind: rotate, rate_rpm: 6}"}};
+  const auto of_beam = HasSubstr("the beam of jammer 'stand-off jammer' moves, but all looks"),
+             of_motion = HasSubstr("platform 'helicopter' moves up to ");
+  EXPECT_THAT(over("{kind: cumulative, seconds: 10}", turning), of_beam);
+  EXPECT_THAT(over("{kind: instant}", turning), Not(of_beam));
+  EXPECT_THAT(over("{kind: cumulative, seconds: 10}"), Not(of_beam));
+  EXPECT_THAT(over("{kind: cumulative, seconds: 60}"), of_motion);
+  EXPECT_THAT(over("{kind: cumulative, seconds: 0.1}"), Not(of_motion));
+  EXPECT_THAT(over("{kind: instant}"), Not(of_motion));
+  const std::vector<Edit> two{
+      {"output.combine", "sum"},
+      {"emitters.stand-off jammer.blink", "{on_s: 1, off_s: 3}"},
+      {"emitters.second",
+       "{platform: ridge site, kind: radar, frequency_hz: 3e9, "
+       "power_w: 100, antenna: {pattern: isotropic}, receiver: {noise_figure_db: 4, bandwidth_hz: 1e6}}"}};
+  const auto of_sum = HasSubstr("jams all looks of an interval of kind max_hold for several radars");
+  EXPECT_THAT(over("{kind: max_hold, seconds: 10}", two), of_sum);
+  EXPECT_THAT(over("{kind: cumulative, seconds: 10}", two), Not(of_sum));
+}
+
 TEST(OtherFiles, InPlaceOfAScenarioAreNamedWithTheirUse) {
   const test::TemporaryFolder folder;
   const auto faultOf = [&](const std::string& name, const std::string& bytes) {
@@ -205,6 +381,8 @@ TEST(OtherFiles, InPlaceOfAScenarioAreNamedWithTheirUse) {
   };
   EXPECT_EQ(faultOf("s.yaml", "scenario: a.yaml\nmeasures: []\nsweep: {}\n"),
             "a study, not a scenario: `emscape study` computes it; it names its scenario\n");
+  EXPECT_EQ(faultOf("e.yaml", "schema_version: 1\nemitters:\n  - {name: a, match: {}, emitter: {}}\n"),
+            "an emitter database, not a scenario: `emscape import` reads it with --emitters\n");
   EXPECT_EQ(faultOf("v.json", R"({"camera": "orbit"})"),
             "a view file, not a scenario: `render` and `view` read it with --state\n");
   EXPECT_EQ(faultOf("e.json", R"({"scenario": "x", "emitters": ["a"], "rows": [], "warnings": []})"),
@@ -291,6 +469,13 @@ TEST(ScenarioWarnings, NameTheSpreadOfClutterByAMovingRadar) {
   EXPECT_THAT(warningsWith("20"), HasSubstr("neither an altitude line"));
   EXPECT_THAT(warningsWith("20"), Not(HasSubstr("abeam")));
   EXPECT_THAT(warningsWith("20", "36.309"), Not(HasSubstr("moves at up to"))) << "10 m/s";
+}
+
+TEST(ScenarioWarnings, OfTheKeyOfClutteredEndsThatHasNoEffectAnyMore) {
+  EXPECT_THAT(messagesOf("clutter.yaml", {{"ground", "{terminal_clutter_ends: receiver}"}}),
+              HasSubstr("'receiver' is not used any more"));
+  EXPECT_THAT(messagesOf("clutter.yaml", {{"ground", "{terminal_clutter_ends: both}"}}),
+              Not(HasSubstr("not used any more")));
 }
 
 TEST(ScenarioWarnings, KindThatConcernsManyEmittersIsOneLine) {

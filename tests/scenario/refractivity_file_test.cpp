@@ -63,6 +63,30 @@ TEST_F(RefractivityFiles, WarnOfUnitsAndOfUnequalProfiles) {
               testing::ElementsAre(HasSubstr("differ in their numbers of levels")));
 }
 
+TEST_F(RefractivityFiles, AirThatIsNoneAtItsHeightAndACutLastRowAreTold) {
+  const auto profile = [](const char* column, double top_m, double at_ground, double at_top, double unit_m) {
+    std::string text = fmt::format("height_msl_m,{}\n", column);
+    for (int i = 0; i <= 10; ++i)
+      text +=
+          fmt::format("{:.1f},{:.2f}\n", top_m * i / 10 / unit_m, at_ground + (at_top - at_ground) * i / 10);
+    return text;
+  };
+  constexpr double kFoot_m = 0.3048;
+  for (const double top_m : {600.0, 2000.0, 5000.0}) {
+    const double m_units = 330 + 0.118 * top_m;
+    EXPECT_THAT(read(profile("m_units", top_m, 330, m_units, 1)).warnings, testing::IsEmpty()) << top_m;
+    EXPECT_THAT(read(profile("m_units", top_m, 330, m_units, kFoot_m)).warnings,
+                testing::ElementsAre(HasSubstr("are the heights in feet?")))
+        << top_m;
+  }
+  EXPECT_THAT(read(profile("n_units", 3000, 315, 210, 1)).warnings, testing::IsEmpty());
+  EXPECT_THAT(read(profile("n_units", 3000, 315, 210, kFoot_m)).warnings,
+              testing::ElementsAre(HasSubstr("its air has 210 N-units at 9842 m, usual are about 83")));
+  EXPECT_THAT(read(profile("m_units", 300, 340, 310, 1)).warnings, testing::IsEmpty()) << "a duct";
+  EXPECT_THAT(read("height_msl_m,m_units\n0,330\n200,3").warnings,
+              testing::ElementsAre(HasSubstr(".csv:3:1: a level has no end")));
+}
+
 TEST_F(RefractivityFiles, ErrorsHaveLocations) {
   EXPECT_THAT(errorOf(""), HasSubstr("air.csv:1:1: the file is empty"));
   EXPECT_THAT(errorOf("height_m,m_units\n"), HasSubstr("air.csv:1:1: unknown column 'height_m'"));

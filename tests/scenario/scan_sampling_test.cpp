@@ -56,5 +56,35 @@ TEST(ScanSampling, AppliesOnlyToSweepingBeamsInSeries) {
   EXPECT_DOUBLE_EQ(scanSampling(rotating(5), 360, clockOf(120, 0.5))->lit_share, 1);
 }
 
+TEST(MissedActivity, OfBlinkingBetweenTheTimesIsToldWithTheStepThatMeetsIt) {
+  Scenario scenario;
+  scenario.platforms.emplace_back();
+  scenario.platforms[0].track.emplace_back();
+  Emitter emitter;
+  emitter.name = "jammer";
+  emitter.platform = 0;
+  for (int n = 0; n < 20; ++n) emitter.active_s.push_back({4.0 * n, 4.0 * n + 1});
+  scenario.emitters = {emitter};
+  const auto text = [&](double begin_s, double step_s, double end_s = 60) {
+    return missedActivityText(scenario, timesOf(begin_s, end_s, step_s));
+  };
+  EXPECT_EQ(text(0, 1), "");
+  EXPECT_EQ(text(0, 0.5), "");
+  EXPECT_EQ(text(0, 100), "") << "one time";
+  EXPECT_EQ(text(0, 4),
+            "emitter 'jammer' switches on and off between the times: from 0 to 60 s it radiates 25 % of the "
+            "time, and at 100 % of the 16 times; steps of 1 s or less meet each of its pauses");
+  EXPECT_NE(text(2, 4).find("and at 0 % of the 15 times; steps of 1 s or less meet each of its active times"),
+            std::string::npos);
+  EXPECT_EQ(text(0, 1.7, 78), "") << "many, met in the right share";
+  scenario.emitters[0].active_s = {{9.5, 10}};
+  EXPECT_NE(text(0, 4, 16).find("steps of 0.5 s or less meet each of its active times"), std::string::npos);
+  scenario.emitters.push_back(scenario.emitters[0]);
+  scenario.emitters[1].name = "other";
+  EXPECT_NE(text(0, 4, 16).find("; likewise 'other'"), std::string::npos);
+  scenario.emitters[0].enabled = scenario.emitters[1].enabled = false;
+  EXPECT_EQ(text(0, 4, 16), "");
+}
+
 }  // namespace
 }  // namespace emscape::scenario

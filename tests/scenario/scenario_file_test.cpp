@@ -339,7 +339,7 @@ TEST_F(ScenarioYaml, WarnsOfABeamThatStepsOverAzimuths) {
   // Beams alike are named together.
   const std::string twin =
       "  - {name: twin, platform: ridge site, kind: transmitter, frequency_hz: 3.1e9, power_w: 10, "
-      "antenna: {pattern: gaussian, gain_dbi: 30, beamwidth_az_deg: 1.6, beamwidth_el_deg: 4.0}, "
+      "antenna: {pattern: cosecant2, gain_dbi: 30, beamwidth_az_deg: 1.6, beamwidth_el_deg: 4.0}, "
       "scan: {kind: rotate, rate_rpm: 12}}\n";
   const ParseResult both =
       parseScenario(folder_.write("scenario.yaml", replaced(text, "receivers:\n", twin + "receivers:\n")));

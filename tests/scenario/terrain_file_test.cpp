@@ -433,13 +433,14 @@ TEST_F(TerrainFileTest, AbsurdPositionsAreRefused) {
               HasSubstr("its posts are 5e-315 apart, less than the allowed 1e-09 of the coordinates' unit"));
 }
 
-TEST_F(TerrainFileTest, DescribeRefusesPostsThatAreNotOnTheEarth) {
+TEST_F(TerrainFileTest, PostsThatAreNotOnTheEarthAreRefused) {
   DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
   file.crs = "EPSG:32632";
   file.transform = {4e8, 30, 0, 4e8, 0, -30};
   const std::string name = write("off.tif", file);
-  EXPECT_EQ(test::errorOf([&] { Terrain::describe(name); }),
-            "elevation file " + name + ": its posts are not on the earth");
+  const std::string refusal = "elevation file " + name + ": its posts are not on the earth";
+  EXPECT_EQ(test::errorOf([&] { Terrain::describe(name); }), refusal);
+  EXPECT_EQ(problemOf(name), refusal);
 }
 
 /// Writes a VRT of 10 rows. @param bands  the elements of its bands  @param attributes  of its root

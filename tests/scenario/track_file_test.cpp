@@ -17,13 +17,16 @@ class TrackFile : public ::testing::Test {
   /// The places and messages of a track's faults.
   std::vector<std::string> faultsOf(const std::string& text) {
     ProblemList problems;
-    points_ = parseTrack("track.csv", text, {"scenario.yaml", 1, 1}, problems);
+    const scenario::TrackFile track = parseTrack("track.csv", text, {"scenario.yaml", 1, 1}, problems);
+    points_ = track.points;
+    warnings_ = track.warnings;
     std::vector<std::string> faults;
     for (const Problem& problem : problems.inOrder())
       faults.push_back(toString(problem.location) + ": " + problem.message);
     return faults;
   }
   std::vector<TrackPoint> points_;
+  std::vector<std::string> warnings_;
 };
 
 TEST_F(TrackFile, MayComeFromASpreadsheet) {
@@ -42,6 +45,16 @@ TEST_F(TrackFile, OtherSeparatorsAreOneFault) {
               ElementsAre(HasSubstr("columns are separated by commas, not tabs")));
   EXPECT_THAT(faultsOf("t_s,latitude_deg,longitude_deg,height_msl_m,\n"),
               ElementsAre(HasSubstr("track.csv:1:45: column 5 has no name")));
+}
+
+TEST_F(TrackFile, ARowWithoutAnEndIsTold) {
+  const std::string rows = "t_s,latitude_deg,longitude_deg,height_msl_m\n0,50,6,1500\n10,50.1,6,15";
+  EXPECT_THAT(faultsOf(rows), IsEmpty());
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("line 3, a row, has no end: if the file was cut there")));
+  for (const char* const end : {"\n", "\r\n", "00\n# made\n# by hand", "\n  "}) {
+    EXPECT_THAT(faultsOf(rows + end), IsEmpty());
+    EXPECT_THAT(warnings_, IsEmpty()) << end;
+  }
 }
 
 TEST_F(TrackFile, ColumnsAreMissingOnlyWhereTheOthersAreKnown) {

@@ -75,7 +75,7 @@ emitters:
     receiver: {noise_figure_db: 4, bandwidth_hz: 1.0e6)" +
                                                       receiver_keys +
                                                       R"(}
-    waveform: )" + waveform + "\n"));
+    waveform: )" + waveform + "\noutput: {interval: {kind: max_hold, turns: 1}}\n"));
 }
 
 TEST(Waveform, GivesTheIntegratedPulses) {

@@ -157,6 +157,26 @@ TEST_F(BeamBlockage, IsWrittenOverAzimuthAndRangeWithThePositionsOfTheGates) {
   EXPECT_NEAR(beam_m[gate], blockage.axis_msl_m(blockage.gate_m(20)), 0.01);
 }
 
+TEST_F(BeamBlockage, ReplacesFilesOfTheUserOnlyIfAsked) {
+  BlockageRequest request;
+  request.range_m = 12e3;
+  request.azimuths = 4;
+  const Blockage blockage = computeBlockage(scenario_, request);
+  const BlockageMap made = mapOf(blockage);
+  const auto write = [&](const std::string& file, Replaces replaces) {
+    if (file.back() == 'v') writeBlockageCsv(blockage, file, replaces);
+    if (file.back() == 'c') writeBlockageNetcdf(blockage, file, replaces);
+    if (file.back() == 'f') writeGeoTiff(file, made.grid, made.map, {}, replaces);
+  };
+  for (const char* const name : {"a.csv", "a.nc", "a.tif"}) {
+    const std::string file = folder_.write(name, "mine");
+    EXPECT_THAT(test::errorOf([&] { write(file, Replaces::own); }, ErrorCode::usage), HasSubstr(name));
+    EXPECT_EQ(test::readFile(file), "mine");
+    write(file, Replaces::any);
+    EXPECT_NE(test::readFile(file), "mine");
+  }
+}
+
 TEST_F(BeamBlockage, AFullDiskIsNamedAsTheCause) {
   BlockageRequest request;
   request.range_m = 60e3;

@@ -142,6 +142,23 @@ TEST(CandidateSites, ColumnsOfATableThatAreNotUsedAreNamedInAWarning) {
   EXPECT_THAT(warnings, HasSubstr("height_agl_m"));
 }
 
+// A comma may be decimal or between thousands: without another number it is not known.
+TEST(CandidateSites, CommasInNumbersOfATableThatAreUnclearAreTold) {
+  const test::TemporaryFolder folder;
+  const std::string header = "name,mgrs,height_msl_m\n", hill = "hill,16SGF5075144164,";
+  const auto readTable = [&](const std::string& text) { return readCandidates(folder.write("a.csv", text)); };
+  for (const std::string& text : std::vector<std::string>{
+           header + hill + "\"1,050\"\n", "name;mgrs;height_msl_m\nhill;16SGF5075144164;1,050\n",
+           "name,lat,lon,height_msl_m\nhill,36,-84,\"1,050\"\n"}) {
+    EXPECT_THAT(test::errorOf([&, &of = text] { readTable(of); }, ErrorCode::bad_input),
+                HasSubstr("'1,050': is its comma decimal, or between thousands?"))
+        << text;
+  }
+  EXPECT_EQ(readTable(header + hill + "1050\n").front().height->height_m, 1050) << "as the message says";
+  EXPECT_EQ(readTable("name;lat;lon;height_msl_m\nhill;36,51;-84,2;1,050\n").front().height->height_m, 1.05)
+      << "others have decimal commas";
+}
+
 TEST(CandidateSites, MinutesInAColumnOfTheirOwnAreRefused) {
   const test::TemporaryFolder folder;
   EXPECT_THAT(

@@ -46,5 +46,14 @@ TEST(ChooseSites, AllSitesIfAllAreAskedFor) {
   EXPECT_EQ(chooseSites(pixels, {1, 2, 1}, 1), (std::vector<std::size_t>{1}));
 }
 
+TEST(ChooseSites, CountsSitesThatWouldDoAsWell) {
+  const std::vector<std::vector<std::uint8_t>> pixels{{1, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}, {1, 1, 0, 0}};
+  const std::vector<float> weights{1, 1, 1, 1};
+  EXPECT_EQ(chooseSites(pixels, weights, 1), (std::vector<std::size_t>{0}));
+  EXPECT_EQ(equalSites(pixels, weights, {0}), 1u) << "site 3";
+  EXPECT_EQ(equalSites(pixels, weights, {0, 1}), 2u) << "site 3 for 0, or 2 for 1";
+  EXPECT_EQ(equalSites(pixels, {1, 1, 2, 1}, {0, 1}), 1u);
+}
+
 }  // namespace
 }  // namespace emscape::study

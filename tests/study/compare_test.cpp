@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "emscape/scenario/file/scenario_file.h"
 #include "study/compare/changed_areas.h"
 #include "study/files/map_metadata.h"
+#include "study/maps/surface_maps.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 
@@ -40,6 +42,39 @@ struct Compared {
   Comparison comparison;
   std::map<std::string, Map> maps;
 };
+
+TEST(Compare, NamesOfMapsAreKnownBeforeTheyAreComputed) {
+  const ComparedScenario a = jacksboro();
+  const MapGrid grid = makeMapGrid(areaOf(a.scenario->region), 5000, "utm");
+  CompareRequest request;
+  request.coverage = {{kLow, {emfield::HeightReference::mean_sea_level, 2000}},
+                      {},
+                      scenario::Quantity::detection_probability,
+                      0.5,
+                      {kTime_s, kTime_s + 10}};
+  const std::set<Product> left_out{Product::best, Product::margin, Product::cause, Product::min_height};
+  for (const ProductInfo& product : productTable()) {
+    if (left_out.count(product.product) == 0) request.coverage.products.push_back(product.product);
+  }
+  std::set<std::string> expected, changes, made;
+  for (CoverageMap& map : outlinesOf(request.coverage)) {
+    expected.insert(fileNameOf(map));
+    map.name = changeNameOf(map.product);
+    changes.insert(fileNameOf(map));
+  }
+  computeCoverage(a.scenario, a.terrain, grid, request.coverage, {},
+                  [&](const CoverageMap& map) { made.insert(fileNameOf(map)); });
+  EXPECT_EQ(made, expected);
+  made.clear();
+  computeComparison(a, a, grid, request, {}, [&](const Map& map) { made.insert(fileNameOf(map)); });
+  EXPECT_EQ(made, changes);
+  request.coverage.products = {Product::min_height, Product::cause};
+  expected.clear();
+  for (const CoverageMap& map : outlinesOf(request.coverage)) expected.insert(fileNameOf(map));
+  EXPECT_THAT(expected,
+              ::testing::ElementsAre("cause_agl100m_t80s", "cause_agl100m_t90s", "cause_msl2000m_t80s",
+                                     "cause_msl2000m_t90s", "min_height_t80s", "min_height_t90s"));
+}
 
 TEST(Compare, EqualScenariosHaveNoChange) {
   const ComparedScenario a = jacksboro();

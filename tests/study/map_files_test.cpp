@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/files/file_digest.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "study/files/geotiff.h"
 #include "study/files/map_shapes.h"
@@ -396,6 +397,28 @@ TEST_F(MapFiles, NetCdfFlagMeaningsOfEmittersDiffer) {
                "none __________ ___________ a_b a_b_");
   EXPECT_EQ(variable->GetAttribute("flag_labels")->ReadAsString(),
             "none\n" + best.labels[0] + "\n" + best.labels[1] + "\na b\na_b");
+}
+
+TEST_F(MapFiles, TheRecordIsOfTheTerrainThatTheMapsAreComputedFrom) {
+  const std::filesystem::path copy = folder.path() / "own", raster = copy / "data/jacksboro.tif";
+  const std::filesystem::path shipped = test::shippedScenario("jacksboro.yaml");
+  std::filesystem::create_directory(copy);
+  std::filesystem::copy(shipped, copy);
+  std::filesystem::copy(shipped.parent_path() / "data", copy / "data",
+                        std::filesystem::copy_options::recursive);
+  MapStudy study = fixture.study();
+  study.scenarios = {scenario::loadScenario((copy / "jacksboro.yaml").string())};
+  const std::string crc32 = fmt::format("{:08x}", digestOf(raster).crc32);
+  for (const bool is_removed : {false, true}) {
+    MapFolder maps(folder.path() / "a", study, {"cog"});
+    maps.add(fixture.map(MapKind::level, 70, -37, 26));
+    folder.write("own/data/jacksboro.tif", "another one");
+    if (is_removed) std::filesystem::remove(raster);
+    maps.finish({});
+    EXPECT_THAT(test::readFile(folder / "a/study.json"), HasSubstr(crc32));
+    std::filesystem::copy(shipped.parent_path() / "data/jacksboro.tif", raster,
+                          std::filesystem::copy_options::overwrite_existing);
+  }
 }
 
 /// A picture of a KMZ file.

@@ -67,8 +67,41 @@ TEST(PartJournal, TruncatedLineIsIgnored) {
     }
     EXPECT_EQ(PartJournal(file, {0, 1, 2}, 3).unfinished().size(), before - 1) << bytes << " bytes";
   }
+  // What a disk without power leaves.
+  for (const std::string& left :
+       {std::string(9000, '\0'), whole.substr(0, 30) + std::string(100, '\0') + "]\n",
+        '\n' + std::string(50, '\0')}) {
+    test::writeFile(file, left);
+    PartJournal(file, {0, 1, 2}, 3).add(resultOf(2), {}, "cpu");
+    EXPECT_THAT(PartJournal(file, {0, 1, 2}, 3).unfinished(), ElementsAre(0, 1));
+  }
   test::writeFile(file, whole);
   EXPECT_THAT(PartJournal(file, {2}, 3).unfinished(), ElementsAre(2)) << "of another part";
+}
+
+TEST(PartJournal, AChangedLineIsToldAndStays) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "part.rows";
+  {
+    PartJournal journal(file, {0, 1, 2}, 3);
+    for (const std::size_t variant : {0u, 1u}) journal.add(resultOf(variant), {}, "cpu");
+  }
+  const std::string whole = test::readFile(file);
+  const std::size_t second = whole.find("cpu", whole.find("cpu") + 1);
+  for (const std::string& changed :
+       {whole.substr(0, second) + "gpu" + whole.substr(second + 3),
+        whole.substr(0, second - 1) + whole.substr(second), whole + "a note of mine\n"}) {
+    test::writeFile(file, changed);
+    EXPECT_THAT(test::errorOf(
+                    [&] {
+                      PartJournal(file, {0, 1, 2}, 3);
+                    },
+                    ErrorCode::bad_input),
+                HasSubstr("was changed since it was written; put it back as it was, or remove the line"));
+    EXPECT_EQ(test::readFile(file), changed);
+  }
+  test::writeFile(file, whole.substr(0, whole.find('\n', 1) + 1));
+  EXPECT_THAT(PartJournal(file, {0, 1, 2}, 3).unfinished(), ElementsAre(1, 2)) << "without the line";
 }
 
 TEST(PartJournal, ProcessesMayAppendAtTheSameTime) {

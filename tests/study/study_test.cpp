@@ -411,6 +411,44 @@ TEST(Study, APartOfAnotherStudyIsRefused) {
               HasSubstr("has 2 parts, not 1"));
 }
 
+/// The text with the first `from` replaced.
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(Study, APartThatWasChangedIsToldAndComputedAgainIfItIsMovedAway) {
+  namespace fs = std::filesystem;
+  const Study study("sweep: {emitters.jammer.power_w: {values: [1, 2, 3, 4]}}");
+  const test::TemporaryFolder folder;
+  StudyFolder files(folder.path(), study.spec(), study.plan(), "test");
+  files.begin(2);
+  for (const int part : {1, 2}) computePart(study, files, part);
+  const fs::path csv = folder.path() / "parts/part_00001.csv",
+                 record = folder.path() / "parts/part_00001.json";
+  const std::string as_written = test::readFile(csv), record_as_written = test::readFile(record);
+  const auto fault = [&] {
+    return test::errorOf([&] { static_cast<void>(files.read()); }, ErrorCode::bad_input);
+  };
+  test::writeFile(csv, as_written + "#");
+  EXPECT_THAT(fault(), AllOf(HasSubstr("part_00001.csv: was changed since it was written; put it back"),
+                             HasSubstr("parts/part_00001.* away: --resume computes the part again")));
+  EXPECT_THAT(test::errorOf([&] { files.missingParts(); }, ErrorCode::bad_input), HasSubstr("was changed"));
+  fs::remove(csv);
+  EXPECT_THAT(fault(), HasSubstr("part_00001.csv: is not there; put it back"));
+  test::writeFile(csv, as_written);
+  test::writeFile(record, replaced(record_as_written, "\"warnings\": []", "\"warnings\": [\"mine\"]"));
+  EXPECT_THAT(fault(), HasSubstr("part_00001.json: was changed since it was written"));
+  test::writeFile(record, replaced(record_as_written, "\"crc32\"", "\"more\""));
+  EXPECT_THAT(fault(), HasSubstr("part_00001.json: "));
+  test::writeFile(record, record_as_written);
+  EXPECT_NO_THROW(static_cast<void>(files.read()));
+  for (const fs::path& file : {csv, record}) fs::rename(file, folder.path() / file.filename());
+  EXPECT_THAT(files.missingParts(), ElementsAre(1));
+  computePart(study, files, 1);
+  EXPECT_NO_THROW(static_cast<void>(files.read()));
+  EXPECT_EQ(test::readFile(csv), as_written);
+}
+
 TEST(Study, KeepsTheMapsOfEachVariant) {
   const Study study(R"(
 variants: [{name: "../as it is/ä"}, {name: no jammer, set: {emitters.jammer.power_w: 1.0e-6}}]
@@ -467,11 +505,8 @@ TEST(Study, SitesAreChosenFromCandidates) {
   const std::filesystem::path record = folder.path() / "parts" / "part_00002.json";
   const std::string text = test::readFile(record);
   const std::size_t value = text.find(':', text.find("\"pixels\"")) + 1;
-  for (const char* const pixels : {"18446744073709551615", "1e30"}) {
-    test::writeFile(record, text.substr(0, value) + pixels + text.substr(text.find_first_of(",\n", value)));
-    EXPECT_THAT(test::errorOf([&] { files.read(); }, ErrorCode::bad_input),
-                testing::AnyOf(HasSubstr("wrong size"), HasSubstr("pixels is 1e+30, not a whole number")));
-  }
+  test::writeFile(record, text.substr(0, value) + "1e30" + text.substr(text.find_first_of(",\n", value)));
+  EXPECT_THAT(test::errorOf([&] { files.read(); }, ErrorCode::bad_input), HasSubstr("was changed"));
 }
 
 TEST(Study, HeightsOfSitesReplaceThatOfThePlatform) {

@@ -31,7 +31,8 @@ std::string TemporaryFolder::write(const std::string& name, const std::string& t
 std::vector<std::string> TemporaryFolder::files() const {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(path_)) {
-    if (entry.is_regular_file()) names.push_back(fs::relative(entry.path(), path_).string());
+    const bool is_list = entry.path().filename() == ".emscape-files";  // see recordOwn()
+    if (entry.is_regular_file() && !is_list) names.push_back(fs::relative(entry.path(), path_).string());
   }
   std::sort(names.begin(), names.end());
   return names;

@@ -22,7 +22,7 @@ class TemporaryFolder {
   std::string operator/(const std::string& name) const { return path_ / name; }
   /// Writes a file of this folder, and makes the folders in its name. @return its path
   std::string write(const std::string& name, const std::string& text) const;
-  /// Paths of all files below, relative to the folder, sorted.
+  /// Paths of all files below but lists of outputs, relative to the folder, sorted.
   std::vector<std::string> files() const;
 
  private:

@@ -116,9 +116,7 @@ TEST_F(Window, AFileThatIsDroppedOnItIsOpened) {
 {"do":"quit"}
 )"),
                          environment());
-  for (int i = 0; i < 600 && log("mark").empty(); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  ASSERT_EQ(log("mark").size(), 1U);
+  ASSERT_TRUE(comesToLog("mark"));
   Display* const display = XOpenDisplay(display_->name().c_str());
   ASSERT_NE(display, nullptr);
   const ::Window window = windowNamed(display, DefaultRootWindow(display), "quick.yaml");
@@ -137,8 +135,7 @@ TEST_F(Window, AResizeLeavesTheLastPictureUntilTheNextIsDrawn) {
 {"do":"quit"}
 )"),
                          environment());
-  for (int i = 0; i < 600 && log("mark").empty(); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  ASSERT_TRUE(comesToLog("mark"));
   Display* const display = XOpenDisplay(display_->name().c_str());
   ASSERT_NE(display, nullptr);
   XWindowAttributes attributes{};

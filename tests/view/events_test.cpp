@@ -22,6 +22,7 @@ const Event kEvents[] = {
     {"Undo",
      "{\"do\":\"set\",\"path\":\"emitters.radar.power_w\",\"value\":\"5\"}\n"
      "{\"do\":\"wait_state\",\"state\":\"exact\"}\n{\"do\":\"mark\",\"text\":\"event\"}\n{\"do\":\"undo\"}"},
+    {"StepWithADifferentField", R"({"do":"seek","time_s":2})"},
     {"Mode", R"({"do":"mode","mode":"mip"})"},
     {"Isosurface", R"({"do":"iso"})"},
     {"Shading", R"({"do":"shading","on":true})"},
@@ -37,7 +38,7 @@ const Event kEvents[] = {
     {"Key", R"({"do":"key","key":"Ctrl+Left"})"},
 };
 
-class WindowEvents : public Window {
+class Events : public Window, public testing::WithParamInterface<Event> {
  protected:
   /// The states after the mark "event", in the order in which they came.
   std::vector<std::string> statesAfterTheEvent() const {
@@ -49,8 +50,6 @@ class WindowEvents : public Window {
     return states;
   }
 };
-
-class Events : public WindowEvents, public testing::WithParamInterface<Event> {};
 
 std::string scriptOf(const char* command) {
   return std::string(R"({"do":"pattern","pattern":"quarter"}
@@ -79,12 +78,6 @@ TEST_P(Events, SettleThroughBusyAndRestore) {
 
 INSTANTIATE_TEST_SUITE_P(Window, Events, testing::ValuesIn(kEvents),
                          [](const auto& event) { return std::string(event.param.name); });
-
-/// A step with a different field.
-TEST_F(WindowEvents, StepSettlesThroughBusyAndRestore) {
-  runWell(viewOf(shippedScenario("jacksboro.yaml"), scriptOf(R"({"do":"seek","time_s":20})")), environment());
-  expectBusyRestoreIdle(statesAfterTheEvent());
-}
 
 // From the event to the begin of the next frame.
 TEST_F(Window, AnEventInRestoreIsAnsweredWithinTwentyMilliseconds) {

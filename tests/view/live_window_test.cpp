@@ -22,9 +22,7 @@ TEST_F(Window, AnotherInputClosesTheSocketOfAStreamAndCompletesItsRecording) {
     arguments.push_back(more);
   RunningProgram program(arguments, environment());
   ASSERT_TRUE(comesToLog("mark"));
-  for (int i = 0; i < 300 && boundPort(port) == 0; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  EXPECT_EQ(boundPort(port), port);
+  EXPECT_TRUE(comes([&] { return boundPort(port) == port; }));
   EXPECT_TRUE(std::filesystem::exists(recording));
   program.signal(SIGINT);
   EXPECT_EQ(program.wait().status, 130);

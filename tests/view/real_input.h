@@ -86,7 +86,7 @@ class RealInput : public Window {
     activate();
   }
   void start(Arguments arguments) {
-    std::filesystem::remove(logFile());
+    forgetLog();
     arguments[3] = "1000x800";
     program_ = std::make_unique<RunningProgram>(arguments, environment());
   }
@@ -107,27 +107,33 @@ class RealInput : public Window {
   /// Ends the program as a session's end does. @return its last report
   Json end() {
     kill(SIGTERM);
-    const std::vector<Json> reports = log("end");
-    return reports.empty() ? Json() : reports.front();
+    return last("end");
   }
 
-  /// Waits until the log meets a condition, at most a minute.
-  static bool comes(const std::function<bool()>& condition) {
-    for (int i = 0; i < 600; ++i) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
-    return false;
-  }
   /// Waits until a value of the report, which each frame logs, meets a condition.
   bool reports(const std::string& key, const std::function<bool(const Json&)>& condition) const {
     return comes([&] {
-      const std::vector<Json> frames = log("frame");
-      return !frames.empty() && condition(frames.back().value(key, Json()));
+      const Json frame = last("frame");
+      return !frame.is_null() && condition(frame.value(key, Json()));
     });
   }
   bool reports(const std::string& key, const Json& expected) const {
     return reports(key, [&](const Json& value) { return value == expected; });
+  }
+  /// Presses keys that open a dialog, and waits until its text has the cursor.
+  /// @param verb  of the command that they run
+  bool opens(const std::string& keys, const std::string& verb) const {
+    constexpr int kFrames = 4;  // until a text that lost the cursor to the keys is no longer told
+    return xdotool("key " + keys) && comes([&] {
+             int frames = 0;
+             bool is_typing = false;
+             for (auto line = log().rbegin(); line != log().rend(); ++line) {
+               if ((*line)["event"] == "command")
+                 return (*line)["do"] == verb && frames >= kFrames && is_typing;
+               if ((*line)["event"] == "frame" && ++frames == 1) is_typing = (*line)["typing"];
+             }
+             return false;
+           });
   }
   /// The commands since the input was shown.
   std::string commands() const {

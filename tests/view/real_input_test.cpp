@@ -134,7 +134,8 @@ TEST_F(RealInput, EnterInAListOrARefusedFieldOfADialogDoesNotEndIt) {
 TEST_F(RealInput, TheOpenDialogStaysWhenAnOpeningEnds) {
   open(quick());
   const std::string name = type(std::filesystem::path(quick()).filename().string());
-  ASSERT_TRUE(xdotool("key ctrl+o sleep 0.4" + name + " key Return key ctrl+o"));
+  ASSERT_TRUE(opens("ctrl+o", "open"));
+  ASSERT_TRUE(xdotool(name + " key Return key ctrl+o"));
   EXPECT_TRUE(reports("computing_what", [](const Json& what) {
     return what.is_string() && what.get<std::string>().find("after the dialog") != std::string::npos;
   }));
@@ -201,6 +202,7 @@ TEST_F(RealInput, TheSwitchOfAHeadingTurnsAnEmitterOffAndOn) {
   open(quick());
   ASSERT_TRUE(xdotool(click(kSwitch) + " sleep 1" + click(kSwitch)));
   EXPECT_TRUE(commandsBecome("enable enable")) << commands();
+  EXPECT_TRUE(comes([&] { return log("edit").size() == 2; }));
   EXPECT_EQ(end()["edits"], 0);
 }
 
@@ -208,7 +210,8 @@ TEST_F(RealInput, ShiftAndDragPanTheTimeLineAndAPlainDragSeeks) {
   open(quick());
   ASSERT_TRUE(xdotool(at(kTimeLine) + " click 4 click 4 click 4"));
   ASSERT_TRUE(commandsBecome("timeline timeline timeline")) << commands();
-  const Json before = log("frame").back();
+  ASSERT_TRUE(reports("visible_from_s", [](const Json& value) { return value > 0; }));
+  const Json before = last("frame");
   ASSERT_TRUE(xdotool("keydown shift" + drag(kTimeLine, 60) + " keyup shift"));
   ASSERT_TRUE(reports("visible_from_s", [&](const Json& value) { return value < before["visible_from_s"]; }));
   EXPECT_EQ(commands().find("seek"), std::string::npos) << commands();
@@ -220,8 +223,8 @@ TEST_F(RealInput, ShiftAndDragPanThePictureAndAPlainDragTurnsIt) {
   open(quick());
   const Json before = log("mark").front();
   ASSERT_TRUE(xdotool("keydown shift" + drag(kPicture, 60) + " keyup shift"));
-  ASSERT_TRUE(comes([&] { return log("frame").back()["frame"] > before["frame"]; }));
-  EXPECT_EQ(log("frame").back()["azimuth_deg"], before["azimuth_deg"]);
+  ASSERT_TRUE(comes([&] { return last("frame")["frame"] > before["frame"]; }));
+  EXPECT_EQ(last("frame")["azimuth_deg"], before["azimuth_deg"]);
   ASSERT_TRUE(xdotool(drag(kLowerPicture, 60)));  // elsewhere: no double click
   EXPECT_TRUE(reports("azimuth_deg", [&](const Json& value) { return value != before["azimuth_deg"]; }));
 }
@@ -232,15 +235,15 @@ TEST_F(RealInput, KeysPaintTheMapAndSplitThePictureByALineThatIsDragged) {
   EXPECT_TRUE(reports("map_layer", 100));
   ASSERT_TRUE(xdotool("key shift+c"));
   ASSERT_TRUE(reports("split", 0.5));
-  const int width = log("frame").back()["picture_width"].get<int>();
-  ASSERT_TRUE(comes([&] { return log("frame").back()["exact"] == true; }));
-  const Json before = log("frame").back();
+  const int width = last("frame")["picture_width"].get<int>();
+  ASSERT_TRUE(comes([&] { return last("frame")["exact"] == true; }));
+  const Json before = last("frame");
   ASSERT_TRUE(xdotool(drag({width / 2 + 1, 480}, -80)));
   EXPECT_TRUE(reports("split", [&](const Json& value) {
     return std::abs(value.get<double>() - (0.5 - 79.0 / width)) < 0.01;
   }));
-  EXPECT_EQ(log("frame").back()["azimuth_deg"], before["azimuth_deg"]) << "the camera stays";
-  EXPECT_EQ(commands(), "map_layer split split");
+  EXPECT_EQ(last("frame")["azimuth_deg"], before["azimuth_deg"]) << "the camera stays";
+  EXPECT_TRUE(commandsBecome("map_layer split split")) << commands();
 }
 
 class Selecting : public RealInput {
@@ -251,7 +254,7 @@ class Selecting : public RealInput {
     open(quick());
     EXPECT_TRUE(xdotool("key y"));
     EXPECT_TRUE(reports("selected", "emitters.radar"));
-    const Json frame = log("frame").back();
+    const Json frame = last("frame");
     return {static_cast<int>(frame["selected_x"].get<double>()),
             static_cast<int>(frame["selected_y"].get<double>()) + kMenuBar_px};
   }
@@ -260,12 +263,12 @@ class Selecting : public RealInput {
 TEST_F(Selecting, InADragTheStatusLineTellsThePointUnderTheCursor) {
   const Place object = select(), there{object.x + 60, object.y + 30};
   const auto latitude = [&](const Place& place, const char* hand) {
-    const Json before = log("frame").back().value("cursor_latitude_deg", Json());
+    const Json before = last("frame").value("cursor_latitude_deg", Json());
     EXPECT_TRUE(xdotool(at(place) + hand));
     EXPECT_TRUE(
         reports("cursor_latitude_deg", [&](const Json& now) { return now.is_number() && now != before; }));
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
-    return log("frame").back().value("cursor_latitude_deg", 0.0);
+    return last("frame").value("cursor_latitude_deg", 0.0);
   };
   const double before = latitude(there, "");
   latitude(object, " mousedown 1");
@@ -286,7 +289,7 @@ TEST_F(Selecting, AClickOnTheGroundSelectsNothingAndOneOnAThingSelectsIt) {
 
 TEST_F(Selecting, ARightClickOpensTheMenuAndARightDragLooksAround) {
   const Place radar = select();
-  const Json before = log("frame").back();
+  const Json before = last("frame");
   // The second entry is "Look at it".
   ASSERT_TRUE(xdotool(at(radar) + " click 3" + at({radar.x + 40, radar.y + 68}) + " sleep 0.5 click 1"));
   EXPECT_TRUE(comes([&] { return commands().find("focus") != std::string::npos; })) << commands();
@@ -300,7 +303,7 @@ TEST_F(Selecting, TwoClicksMeasureAndEscapeEnds) {
   const Place radar = select();
   ASSERT_TRUE(xdotool("key shift+m" + click(radar) + click({radar.x + 60, radar.y + 20})));
   EXPECT_TRUE(reports("measured_m", [](const Json& value) { return value.is_number() && value > 100; }));
-  EXPECT_EQ(log("frame").back()["selected"], "emitters.radar") << "clicks of a tool do not select";
+  EXPECT_EQ(last("frame")["selected"], "emitters.radar") << "clicks of a tool do not select";
   ASSERT_TRUE(xdotool("key Escape"));
   EXPECT_TRUE(reports("tool", "none"));
 }
@@ -333,6 +336,12 @@ TEST_F(RealInput, KeysAfterGoToTimeAreItsNumber) {
   EXPECT_TRUE(reports("asked_s", 3));
 }
 
+TEST_F(RealInput, LettersInTheDialogOfTheMapAreForItsField) {
+  open(quick());
+  ASSERT_TRUE(xdotool("key ctrl+shift+g sleep 0.5" + type("cz.tif") + " key Return sleep 0.3 key Escape"));
+  EXPECT_TRUE(commandsBecome("panel drape back")) << commands();
+}
+
 /// A folder of two scenarios, another one below it, and views.
 class OpenDialog : public RealInput {
  protected:
@@ -344,6 +353,21 @@ class OpenDialog : public RealInput {
   }
   std::string input(const std::string& name) const { return folder_ / ("inputs/" + name); }
 };
+
+TEST_F(OpenDialog, ARefusedTextStaysInEachFieldOfADialogUntilItIsMended) {
+  open(input("a.yaml"));
+  ASSERT_TRUE(xdotool("key g sleep 0.5" + type("3x") + " key Return sleep 0.5 key BackSpace Return"));
+  EXPECT_TRUE(commandsBecome("panel seek seek")) << commands();
+  EXPECT_TRUE(reports("asked_s", 3));
+  // The fields of begin and end, one after the other
+  ASSERT_TRUE(xdotool("key ctrl+m sleep 0.5 key Tab Tab Tab Tab Tab sleep 0.2" + type("1x") +
+                      " key Tab sleep 0.2" + type("3y") +
+                      " key Tab sleep 0.3 key shift+Tab sleep 0.2 key End BackSpace shift+Tab sleep 0.2"
+                      " key End BackSpace Return"));
+  ASSERT_TRUE(commandsBecome("panel seek seek record record")) << commands();
+  EXPECT_EQ(last("command")["begin_s"], 1);
+  EXPECT_EQ(last("command")["end_s"], 3);
+}
 
 TEST_F(OpenDialog, OpensTheTypedFile) {
   open(input("a.yaml"));
@@ -361,15 +385,40 @@ TEST_F(OpenDialog, EntersTheTypedFolderAndOpensTheTypedFileThere) {
 
 TEST_F(OpenDialog, OpensTheSelectedFileIfNothingIsTyped) {
   open(input("a.yaml"));
-  ASSERT_TRUE(xdotool("key ctrl+o sleep 1" + type("x") + " key BackSpace key Down key Down key Return"));
+  ASSERT_TRUE(opens("ctrl+o", "open"));
+  ASSERT_TRUE(xdotool(type("x") + " key BackSpace key Down key Down key Return"));
   EXPECT_TRUE(commandsBecome("open open")) << commands();
   EXPECT_TRUE(reports("input", input("b.yaml")));
 }
 
+TEST_F(OpenDialog, TabReachesTheButtonsAndComesBackToThePath) {
+  open(input("below/c.yaml"));
+  // Path, Open, Open this folder of volumes, Up: which Enter presses.
+  ASSERT_TRUE(xdotool("key ctrl+o sleep 0.5 key Tab key Tab key Tab sleep 0.2 key Return sleep 0.6" +
+                      std::string(" key Tab") + type("b.yaml") + " key Tab sleep 0.2 key space"));
+  EXPECT_TRUE(commandsBecome("open open")) << commands();
+  EXPECT_TRUE(reports("input", input("b.yaml")));
+}
+
+TEST_F(OpenDialog, TabGoesThroughTheFieldsAndListsOfTheDialogOfRecordings) {
+  open(input("a.yaml"));
+  // File, Browse, size, camera, begin, end; and back to the size, whose list the arrow keys go through
+  ASSERT_TRUE(xdotool("key ctrl+m sleep 0.5 key Tab key Tab key Tab key Tab key Tab sleep 0.2" + type("1") +
+                      " key Tab sleep 0.2" + type("2") +
+                      " key shift+Tab key shift+Tab key shift+Tab sleep 0.2 key Return sleep 0.5 key Down"
+                      " key Return sleep 0.3 key Tab key Tab key Tab sleep 0.2" +
+                      type("3") + " key Return"));
+  ASSERT_TRUE(commandsBecome("record record")) << commands();
+  const Json record = last("command");
+  EXPECT_EQ(record["begin_s"], 1);
+  EXPECT_EQ(record["end_s"], 3);
+  EXPECT_EQ(record["width"], 1280);
+}
+
 TEST_F(OpenDialog, AMistypedPathStaysWithItsText) {
   open(input("a.yaml"));
-  ASSERT_TRUE(xdotool("key ctrl+o sleep 0.4" + type("b.yamk") + " key Return sleep 0.4 key BackSpace" +
-                      type("l") + " key Return"));
+  ASSERT_TRUE(opens("ctrl+o", "open"));
+  ASSERT_TRUE(xdotool(type("b.yamk") + " key Return sleep 0.4 key BackSpace" + type("l") + " key Return"));
   EXPECT_TRUE(commandsBecome("open open")) << commands();
   EXPECT_TRUE(reports("input", input("b.yaml")));
 }
@@ -387,16 +436,29 @@ TEST_F(OpenDialog, SavesUnderTheTypedName) {
   open(input("a.yaml"));
   ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key Return"));
   ASSERT_TRUE(comesToLog("edit"));
-  ASSERT_TRUE(xdotool("key ctrl+shift+s sleep 0.5 key ctrl+a" + type("other.yaml") + " key Return"));
+  ASSERT_TRUE(opens("ctrl+shift+s", "save_as"));
+  ASSERT_TRUE(xdotool("key ctrl+a" + type("other.yaml") + " key Return"));
   EXPECT_TRUE(commandsBecome("set save_as save")) << commands();
   EXPECT_TRUE(comes([&] { return std::filesystem::exists(input("other.yaml")); }));
   EXPECT_TRUE(reports("unsaved", false));
 }
 
+TEST_F(OpenDialog, FileDialogsFollowOneAnotherInOneWindow) {
+  open(input("a.yaml"));
+  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key Return"));
+  ASSERT_TRUE(comesToLog("edit"));
+  ASSERT_TRUE(opens("ctrl+o", "open"));
+  ASSERT_TRUE(xdotool("key Escape"));
+  ASSERT_TRUE(opens("ctrl+shift+s", "save_as"));
+  ASSERT_TRUE(xdotool("key ctrl+a" + type("other.yaml") + " key Return"));
+  EXPECT_TRUE(commandsBecome("set open back save_as save")) << commands();
+}
+
 TEST_F(OpenDialog, TheSavedNameIsInTheTitleAndTheNextToBeSaved) {
   openByHand(input("a.yaml"));
-  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key ctrl+shift+s sleep 0.6" + type("mine.yaml") +
-                      " key Return"));
+  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7")));
+  ASSERT_TRUE(opens("ctrl+shift+s", "save_as"));
+  ASSERT_TRUE(xdotool(type("mine.yaml") + " key Return"));
   EXPECT_TRUE(comes([&] { return xdotool("search --name '^mine.yaml'"); }));
   ASSERT_TRUE(xdotool(controlClick(kLosses) + type("8") + " key ctrl+s"));
   EXPECT_TRUE(commandsBecome("set save_as save set save")) << commands();

@@ -1,4 +1,5 @@
 #include "apps/view/session/platform_drag.h"
+#include "apps/view/values/edit_text.h"
 #include "apps/view/values/shown_quantity.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "playback/editing/pick.h"
@@ -82,6 +83,38 @@ TEST(SessionEdits, ItemsAreSwitchedAddedCopiedAndRemovedWithUndo) {
   EXPECT_EQ(sample->scenario()->platforms[1].track.size(), 2U);
   EXPECT_THAT(sample.perform(R"({"do":"track","platform":"mast","points":["52,5","52"]})"),
               HasSubstr("point '52': expected LAT,LON"));
+}
+
+TEST(SessionEdits, WhatWasAddedTogetherIsTakenBackTogether) {
+  SessionSample sample("quick.yaml");
+  const auto add = [&] {
+    EXPECT_EQ(sample.perform(R"({"do":"add","what":"radar","latitude_deg":52,"longitude_deg":5.01})"), "");
+    const std::vector<std::string> texts = editTexts(*sample->original(), sample->scenario()->edits());
+    EXPECT_THAT(texts, testing::ElementsAre("platform new radar: added", "emitter new radar: added"));
+  };
+  for (const char* path : {"platforms.new radar", "emitters.new radar"}) {
+    add();
+    EXPECT_EQ(sample.perform(Json{{"do", "revert"}, {"path", path}}.dump()), "") << path;
+    EXPECT_EQ(sample->scenario()->edits(), std::vector<scenario::Edit>()) << path;
+    sample.perform(R"({"do":"undo"})");
+    EXPECT_EQ(sample->scenario()->edits().size(), 2U) << "one step";
+    sample.perform(R"({"do":"undo"})");
+    EXPECT_EQ(sample->scenario()->edits().size(), 0U);
+  }
+  for (const char* path : {"platforms.new radar", "emitters.new radar"}) {
+    add();
+    sample.perform(R"({"do":"set","path":"platforms.new radar.name","value":"hill"})");
+    sample.perform(R"({"do":"set","path":"emitters.new radar.name","value":"eye"})");
+    EXPECT_EQ(sample.perform(Json{{"do", "revert"}, {"path", path}}.dump()), "") << path;
+    EXPECT_EQ(sample->scenario()->edits(), std::vector<scenario::Edit>()) << path << ", renamed";
+  }
+  // A platform that carries more, also from elsewhere, stays or takes it along.
+  add();
+  sample.perform(R"({"do":"set","path":"emitters.transmitter.platform","value":"new radar"})");
+  EXPECT_EQ(sample.perform(R"({"do":"revert","path":"emitters.new radar"})"), "");
+  EXPECT_EQ(sample->scenario()->edits().size(), 2U);
+  EXPECT_EQ(sample.perform(R"({"do":"revert","path":"platforms.new radar"})"), "");
+  EXPECT_EQ(sample->scenario()->edits().size(), 0U);
 }
 
 TEST(SessionEdits, ANewNameComputesNothingAndIsFollowed) {
@@ -269,6 +302,19 @@ TEST(SessionEdits, AQuantityThatTheScenarioDoesNotHaveIsRefused) {
   EXPECT_THAT(offered, testing::Contains("snr_db"));
   EXPECT_THAT(offered, testing::Each(testing::AllOf(testing::Not("sinr_db"), testing::Not("detection_age_s"),
                                                     testing::Not("jammer_to_signal_db"))));
+}
+
+TEST(SessionEdits, TheErrorOfAFieldGoesWithTheNextFieldThatSucceeds) {
+  SessionSample sample("quick.yaml");
+  sample.perform(R"({"do":"set_together","edits":["platforms.mast.position.height_agl_m=null",
+    "platforms.mast.position.height_msl_m=-30"]})");
+  ASSERT_TRUE(sample.waitUntil([&] { return sample->status().failed; }));
+  EXPECT_THAT(sample.error(), HasSubstr("'mast' at t = 0 s"));
+  sample.perform(R"({"do":"dolly","factor":0.9})");
+  EXPECT_THAT(sample.error(), HasSubstr("'mast' at t = 0 s"));
+  sample.perform(R"({"do":"undo"})");
+  ASSERT_TRUE(sample.settle());
+  EXPECT_EQ(sample.error(), "");
 }
 
 TEST(SessionEdits, AnEditThatTakesTheShownQuantityAwayShowsTheFirstOne) {

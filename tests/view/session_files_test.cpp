@@ -62,7 +62,10 @@ TEST(SessionOfVolumes, AQuantityThatTheyDoNotHoldIsRefused) {
   {
     SessionSample computed(optionsFor(shippedScenario("quick.yaml"), {160, 120}));
     ASSERT_TRUE(computed.settle());
-    volume::writeVolumes(folder / "one.vdb", {computed->picture()->volume.host().get()});
+    const auto first = computed->picture()->volume.host();
+    computed.perform(R"({"do":"quantity","name":"field_strength_dbuvm"})");
+    ASSERT_TRUE(computed.settle());
+    volume::writeVolumes(folder / "one.vdb", {first.get(), computed->picture()->volume.host().get()});
   }
   SessionSample shown(optionsFor(folder / "one.vdb", {160, 120}));
   ASSERT_TRUE(shown.settle());
@@ -72,6 +75,12 @@ TEST(SessionOfVolumes, AQuantityThatTheyDoNotHoldIsRefused) {
   EXPECT_THAT(shown.error(), HasSubstr("one.vdb: there is no volume of 'snr_db'"));
   EXPECT_EQ(shown->viewState().quantity, "");
   EXPECT_TRUE(shown->viewState().transfer);
+  shown.perform(R"({"do":"dolly","factor":0.9})");
+  ASSERT_TRUE(shown.settle());
+  EXPECT_THAT(shown.error(), HasSubstr("'snr_db'")) << "the quantity shown before is no remedy";
+  shown.perform(R"({"do":"quantity","name":"field_strength_dbuvm"})");
+  ASSERT_TRUE(shown.settle());
+  EXPECT_EQ(shown.error(), "");
 }
 
 // --- recent files ---
@@ -86,6 +95,13 @@ TEST(RecentFiles, KeepTheNewestInFrontAndEachOnce) {
   for (int i = 0; i < 20; ++i) addRecentFile(fmt::format("/{}.yaml", i));
   EXPECT_EQ(readRecentFiles().size(), kMaxRecentFiles);
   EXPECT_EQ(readRecentFiles().front(), "/19.yaml");
+}
+
+// What was opened or saved is so.
+TEST(RecentFiles, ThatCannotBeWrittenAreNoFailure) {
+  const StateFolder folder;
+  folder.write("emscape", "no folder");
+  EXPECT_THAT(addRecentFile("/a.yaml"), ElementsAre("/a.yaml"));
 }
 
 // --- the browser ---
@@ -224,12 +240,13 @@ TEST(Opening, DropsEditsThatNoLongerApply) {
 
 /// Another program that opens the input after the first one ended irregularly.
 struct NextProgram {
-  explicit NextProgram(SessionSample& ended) {
+  explicit NextProgram(SessionSample& ended, const std::string& input = shippedScenario("quick.yaml"))
+      : shown(optionsFor(input)) {
     ended.session.reset();
     ended.files->autosaves.reset();
     shown->shown({});
   }
-  SessionSample shown{optionsFor(shippedScenario("quick.yaml"))};
+  SessionSample shown;
   SessionOpener opener{shown.files, [this](const ViewOptions& options) { return shown.make(options); }};
 };
 
@@ -275,7 +292,7 @@ TEST_F(Opener, ReloadsAChangedFileWithTheEditsThatApply) {
   ASSERT_TRUE(waitUntilOpened(shown_, opener_));
   ASSERT_EQ(shown_->viewState().edits.size(), 1U);
   EXPECT_EQ(shown_->viewState().edits[0].path, "emitters.radar.power_w");
-  EXPECT_THAT(shown_->notice().text, HasSubstr("1 edit is left out"));
+  EXPECT_THAT(shown_->notice().text, HasSubstr("1 part of the view is left out"));
   shown_->update();
   EXPECT_THAT(shown_->warnings(), testing::Contains(HasSubstr("emitters.transmitter.power_w=7")))
       << "listed as long as the input is open";
@@ -428,6 +445,59 @@ TEST_F(Opener, SLOW_EditsThatLeaveNoIsosurfaceAreRestored) {
   EXPECT_TRUE(waitForAutosave(again, false));
 }
 
+TEST_F(Opener, SLOW_FilesOfTheMapThatAreGoneDoNotPreventRestoring) {
+  ASSERT_TRUE(shown_.settle());
+  const std::string places = folder_.write("places.geojson", R"({"type":"FeatureCollection","features":[]})");
+  shown_.perform(fmt::format(R"({{"do":"places","files":["{}"]}})", places));
+  shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
+  ASSERT_TRUE(waitForAutosave(shown_, true));
+  NextProgram next(shown_);
+  SessionSample& again = next.shown;
+  ASSERT_TRUE(again.settle());
+  fs::remove(places);
+  again.perform(R"({"do":"restore"})");
+  ASSERT_TRUE(waitUntilOpened(again, next.opener));
+  EXPECT_EQ(again->viewState().edits.size(), 1U);
+  EXPECT_THAT(again->viewState().places, ElementsAre());
+  again->update();
+  EXPECT_THAT(again->warnings(), testing::Contains(HasSubstr("places.geojson is left out of the map")));
+  again->leave(false);
+  EXPECT_TRUE(waitForAutosave(again, false));
+}
+
+TEST_F(Opener, SLOW_EditsThatCannotBeRestoredStayInTheirFile) {
+  const std::string input = shippedScenario("jacksboro.yaml");
+  const std::string small = R"("region.dims=[20, 20, 10]")";
+  shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", input));
+  ASSERT_TRUE(waitUntilOpened(shown_, opener_));
+  shown_.perform(fmt::format(
+      R"({{"do":"set_together","edits":[{},"platforms.ridge site.position.latitude_deg=40"]}})", small));
+  ASSERT_TRUE(waitForAutosave(shown_, true));
+  EXPECT_THAT(shown_->programState().what, HasSubstr("NOT COMPUTED: "));
+  NextProgram next(shown_, input);
+  SessionSample& again = next.shown;
+  ASSERT_TRUE(again.settle());
+  const fs::path kept = playback::autosaveFileOf(input);
+  const std::string before = readFile(kept);
+  again.perform(R"({"do":"restore"})");
+  ASSERT_TRUE(waitUntilOpened(again, next.opener));
+  EXPECT_THAT(again.error(), HasSubstr("terrain"));
+  EXPECT_THAT(again->viewState().edits, testing::IsEmpty());
+  again.perform(fmt::format(R"({{"do":"set_together","edits":[{}]}})", small));
+  ASSERT_TRUE(
+      again.waitUntil([&] { return fs::exists(playback::autosaveFileOf(input, 2)) && !again->working(); }));
+  EXPECT_EQ(readFile(kept), before);
+  again->leave(false);
+}
+
+TEST_F(Opener, FilesOfTheMapThatDoNotExistAreRefused) {
+  ASSERT_TRUE(shown_.settle());
+  EXPECT_THAT(shown_.perform(R"({"do":"drape","file":"/no/such.tif"})"), HasSubstr("no such file"));
+  EXPECT_EQ(shown_->view().drape, "");
+  EXPECT_THAT(shown_.perform(R"({"do":"places","files":["/no/such.csv"]})"), HasSubstr("no such file"));
+  EXPECT_THAT(shown_->view().places, ElementsAre());
+}
+
 TEST_F(Opener, SLOW_AnAutosaveGoesWhenEditsAreUndoneOrDiscarded) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
@@ -513,10 +583,26 @@ TEST_F(Opener, ErrorsOfRecordingAreReported) {
   shown_.perform(fmt::format(R"({{"do":"record","file":"{}"}})", folder_ / "file/frames"));
   ASSERT_TRUE(waitUntilRecorded(shown_));
   EXPECT_TRUE(shown_->notice().is_error);
-  EXPECT_THAT(shown_->notice().text, HasSubstr("is to be a folder, but it or a part of it is a file"));
+  EXPECT_THAT(shown_->notice().text, HasSubstr("is to be a folder, but " + folder_ / "file" + " is a file"));
   shown_.perform(fmt::format(R"({{"do":"record","file":"{}"}})", folder_ / "one.png"));
   ASSERT_TRUE(waitUntilRecorded(shown_));
   EXPECT_THAT(shown_->notice().text, HasSubstr("one .png for 5 pictures"));
+}
+
+TEST_F(Opener, ARecordedPictureThatWasEditedIsAskedForBeforeItIsReplaced) {
+  ASSERT_TRUE(shown_.settle());
+  const std::string record = fmt::format(
+      R"({{"do":"record","file":"{}","begin_s":1,"end_s":1,"replace":false}})", folder_ / "frames");
+  shown_.perform(record);
+  ASSERT_TRUE(waitUntilRecorded(shown_));
+  EXPECT_FALSE(shown_->notice().is_error) << shown_->notice().text;
+  shown_.perform(record);
+  EXPECT_FALSE(shown_->panels.replace) << "as this window has written it";
+  ASSERT_TRUE(waitUntilRecorded(shown_));
+  folder_.write("frames/quick_0001.png", "edited");
+  shown_.perform(record);
+  EXPECT_TRUE(shown_->panels.replace);
+  EXPECT_EQ(readFile(folder_ / "frames/quick_0001.png"), "edited");
 }
 
 TEST_F(Opener, AMissingFfmpegIsOneMessage) {

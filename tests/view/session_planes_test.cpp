@@ -206,6 +206,29 @@ TEST_F(Split, CursorReadsTheHalfUnderIt) {
   EXPECT_LT(original, changed);
 }
 
+TEST_F(Split, AReadingOfTheLeftHalfStaysOneWhenTheCursorLeaves) {
+  perform(R"({"do":"set","path":"emitters.radar.power_w","value":"100000"})");
+  settle();
+  session->cursor().turnOn(true);
+  perform(R"({"do":"split","position":0.8})");
+  settle();
+  const render::ImageSize size = session->picture()->size;
+  session->cursor().hover(render::Projected{size.width * 0.45, size.height * 0.55});
+  settle();
+  waitUntil([&] { return !session->cursor().isBusy(); });
+  const ProbeResult before = *session->cursor().result();
+  ASSERT_TRUE(before.reading);
+  EXPECT_TRUE(before.is_beside);
+  session->cursor().hover(std::nullopt);
+  perform(R"({"do":"set","path":"emitters.radar.power_w","value":"200000"})");
+  settle();
+  waitUntil([&] { return !session->cursor().isBusy(); });
+  const ProbeResult& after = *session->cursor().result();
+  ASSERT_TRUE(after.reading);
+  EXPECT_TRUE(after.is_beside);
+  EXPECT_EQ(after.reading->sample.value, before.reading->sample.value);
+}
+
 using Comparison = SessionTest;
 
 TEST_F(Comparison, ShowsTheDifferenceWithColoursOfItsOwnAndTheFieldAgain) {

@@ -58,6 +58,21 @@ TEST(SessionProbe, FollowsTimeAndEdits) {
   EXPECT_NEAR(sample->report()["probe_latitude_deg"].get<double>(), 52.02, 1e-9);
 }
 
+TEST(SessionProbe, FollowsEditsWhereTheCursorLeftThePicture) {
+  SessionSample sample("quick.yaml", {{"output.floor", "-300"}});
+  sample.perform(R"({"do":"panel","name":"probe"})");
+  sample->prober().hover(render::Projected{110, 110});
+  sample.settle();
+  const auto value = [&] { return sample->report()["probe_value"].get<double>(); };
+  const double before = value();
+  sample->prober().hover(std::nullopt);
+  sample.perform(
+      R"({"do":"set_together","edits":["emitters.transmitter.power_w=10000","emitters.radar.power_w=100000"]})");
+  sample.settle();
+  EXPECT_NEAR(value(), before + 10, 0.01);
+  EXPECT_FALSE(sample->prober().isLocked());
+}
+
 TEST(SessionProbe, FollowsTheCursorUntilItIsLocked) {
   SessionSample sample("jacksboro.yaml", {{"region.dims", "[40, 40, 20]"}});
   sample.perform(R"({"do":"panel","name":"probe"})");
@@ -133,6 +148,15 @@ TEST(SessionProbe, ValueOverTimeIsThatOfTheField) {
   sample.perform(R"({"do":"lock_probe"})");
   sample.settle();
   EXPECT_EQ(sample->history().computed, 0U);
+}
+
+TEST(SessionProbe, TheTimesOfValuesAreKnownBeforeTheValues) {
+  SessionSample sample("quick.yaml");
+  const playback::LivePicture& picture = *sample->picture();
+  ProbeHistory history([] {});
+  history.ask({{picture.scenario, picture.terrain}, "power_density_dbwm2", 52, 5, 1500, {0, 1, 2}});
+  EXPECT_EQ(history.values().times_s, (std::vector<double>{0, 1, 2})) << "their chart has its place";
+  EXPECT_EQ(history.values().computed, 0U);
 }
 
 TEST(SessionProbe, ReportsInvalidPositions) {

@@ -81,6 +81,7 @@ TEST_F(Loss, ASavedNameIsTheDocument) {
   ASSERT_TRUE(shown_.settle());
   EXPECT_EQ(shown_->document(), file);
   EXPECT_EQ(shown_->usualScenarioFile(), file);
+  EXPECT_EQ(shown_->files().recent.front(), file);
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"600"})");
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"save"})");

@@ -138,6 +138,50 @@ TEST_F(StreamTest, ThePlatformsMoveWhateverTheUserEdits) {
   EXPECT_EQ(added->track.front().position.latitude_deg, 52) << "what the stream does not know stays";
 }
 
+TEST_F(StreamTest, WhatTheStreamMovesCannotBeMovedByTheUser) {
+  SessionSample session(options());
+  session.settle();
+  EXPECT_EQ(session->streamTitle(), "live, nothing received");
+  send(52.01, 5);
+  ASSERT_TRUE(comesTo(session, 52.01));
+  const std::string reason = "'boat' cannot be put elsewhere: it is where the stream has it";
+  for (const char* command : {R"({"do":"move","platform":"boat","latitude_deg":52.02,"longitude_deg":5})",
+                              R"({"do":"set","path":"platforms.boat.position.latitude_deg","value":"52.02"})",
+                              R"({"do":"set","path":"platforms.boat.attitude.heading_deg","value":"20"})",
+                              R"({"do":"draw_track","platform":"boat"})",
+                              R"({"do":"track","platform":"boat","points":["52,5","52.01,5.01"]})"}) {
+    EXPECT_EQ(session.perform(command), reason) << command;
+  }
+  EXPECT_EQ(errorOf([&] { session->requireMovable("boat"); }), reason);
+  session->drag({{"platforms.boat.position.latitude_deg", "52.02"}});
+  EXPECT_FALSE(session->isDragging());
+  EXPECT_EQ(session->scenario()->edits().size(), 0U);
+  EXPECT_FALSE(session->hasUnsavedEdits());
+  // Of the mast the stream tells nothing.
+  session.perform(R"({"do":"move","platform":"mast","latitude_deg":52.02,"longitude_deg":5})");
+  EXPECT_EQ(session->scenario()->edits().size(), 2U);
+  session.perform(R"({"do":"set","path":"platforms.boat.name","value":"ship"})");
+  EXPECT_EQ(session.perform(R"({"do":"move","platform":"ship","latitude_deg":52.02,"longitude_deg":5})"),
+            "'ship' cannot be put elsewhere: it is where the stream has it");
+  EXPECT_EQ(session->scenario()->edits().size(), 3U);
+  EXPECT_EQ(session->streamTitle(), "live");
+}
+
+TEST_F(StreamTest, TheTitleTellsRecordsThatMoveNothing) {
+  SessionSample session(options());
+  session.settle();
+  send(52.01, 5);
+  ASSERT_TRUE(comesTo(session, 52.01));
+  ASSERT_TRUE(session.settle());
+  const std::string before = session->picture()->annotations.time;
+  EXPECT_THAT(before, HasSubstr("live, "));
+  std::this_thread::sleep_for(std::chrono::milliseconds(2100));
+  send(52.01, 5);
+  EXPECT_TRUE(session.waitUntil([&] { return session->picture()->annotations.time != before; }));
+  const std::vector<playback::NamedPose> none;
+  EXPECT_THAT(playback::posesOf({}, none, 1, /*has_stopped=*/true)->told, testing::EndsWith(", stopped"));
+}
+
 TEST_F(StreamTest, OutputsWithoutANameAreBesideTheBaseAndStay) {
   const std::string home = std::getenv("HOME") == nullptr ? "" : std::getenv("HOME");
   setenv("HOME", folder_.path().c_str(), 1);  // without Pictures
@@ -181,7 +225,6 @@ TEST_F(StreamTest, AViewFileKeepsTheStreamAndAnotherInputEndsItWithItsRecording)
   session.waitUntil([&] { return !session->working(); });
   open(view);
   EXPECT_NE(session->options().stream, nullptr);
-  EXPECT_FALSE(std::filesystem::exists(recorded.record));
   open(base_);
   EXPECT_EQ(session->options().stream, nullptr);
   EXPECT_TRUE(std::filesystem::exists(recorded.record));
@@ -219,6 +262,70 @@ TEST(AcmiStream, TheCameraFollowsAnObjectByItsNameWhenOthersComeAndGo) {
   EXPECT_EQ(session->view().follow, "Bravo");
 }
 
+const char kWalk[] =
+    "<gpx version=\"1.1\"><trk><name>walker</name><trkseg>"
+    "<trkpt lat=\"52\" lon=\"5\"><ele>2</ele><time>2026-06-01T06:00:00Z</time></trkpt>"
+    "<trkpt lat=\"52.01\" lon=\"5\"><ele>2</ele><time>2026-06-01T06:10:00Z</time></trkpt>"
+    "</trkseg></trk></gpx>\n";
+
+const char kWalkersRadio[] =
+    "schema_version: 1\nemitters:\n  - name: radio\n    match: {object_name: walker}\n    emitter: {kind: "
+    "transmitter, "
+    "frequency_hz: 3.0e8, power_w: 5, antenna: {pattern: isotropic}}\n";
+
+TEST(Recordings, WithoutAnEmitterMoveAndTellHowToAddOne) {
+  const StateFolder folder;
+  const std::string recording = folder.write("walk.gpx", kWalk);
+  const Opening opening = prepareOpening({recording, "", std::nullopt, false}, {});
+  const std::string silent =
+      "walk.gpx: 1 platform, without an emitter, as the starter set has none for it: switch on 'walker "
+      "transmitter' in What if, or add others there";
+  ViewOptions options = opening.options;
+  options.view.size = {160, 120};
+  SessionSample session(options);
+  session->shown({});
+  ASSERT_TRUE(session.settle());
+  const scenario::Scenario& scenario = *session->scenario();
+  EXPECT_TRUE(scenario.platforms.front().moves());
+  EXPECT_FALSE(scenario.emitters.front().enabled);
+  EXPECT_EQ(session->files().recent, std::vector<std::string>{recording}) << "not its copy";
+  EXPECT_THAT(session->notice().text, HasSubstr(silent));
+  EXPECT_THAT(session->warnings(), testing::Contains(HasSubstr(silent)));
+  EXPECT_EQ(session.perform(R"({"do":"enable","emitter":"walker transmitter"})"), "");
+  EXPECT_TRUE(session.settle());
+  EXPECT_EQ(session->notice().text, "") << "no longer true";
+  EXPECT_THAT(session->warnings(), testing::Contains(testing::StartsWith("walk.gpx: 1 platform; over flat")));
+  session->perform({"reload"});
+  ASSERT_TRUE(session.files->request);
+  EXPECT_EQ(session.files->request->file, recording);
+  folder.write("walk.gpx.emitters.yaml", kWalkersRadio);
+  const Opening reopening = prepareOpening(*session.files->request, session->options());
+  EXPECT_TRUE(reopening.imports);
+  EXPECT_THAT(reopening.options.made_note.text(true),
+              testing::StartsWith("walk.gpx: 1 platform, emitters of walk.gpx.emitters.yaml; over flat"));
+}
+
+TEST(Recordings, OpenedAgainAreNotTakenForChangedFiles) {
+  const StateFolder folder;
+  const std::string recording = folder.write("walk.gpx", kWalk);
+  const auto hasChanged = [&](bool adds_edit) {
+    const Opening opening = prepareOpening({recording, "", std::nullopt, false}, {});  // writes the copy
+    ViewOptions options = opening.options;
+    options.view.size = {160, 120};
+    SessionSample session(options);
+    session->shown({});
+    session.settle();
+    if (adds_edit) session.perform(R"({"do":"enable","emitter":"walker transmitter"})");
+    session->leave(true);
+    session.waitUntil([&] { return !session->working(); });
+    return session->keptView() && session->keptView()->input_changed;
+  };
+  hasChanged(true);
+  EXPECT_FALSE(hasChanged(false));
+  std::filesystem::last_write_time(recording, std::filesystem::file_time_type::clock::now());
+  EXPECT_TRUE(hasChanged(false));
+}
+
 TEST(Recordings, AreOpenedAsScenariosInTheFolderOfTheState) {
   const StateFolder folder;
   const std::string recording =
@@ -228,8 +335,8 @@ TEST(Recordings, AreOpenedAsScenariosInTheFolderOfTheState) {
                    "RadarHorizontalBeamwidth=3\n#10\n1,T=5.01|52\n");
   const Opening opening = prepareOpening({recording, "", std::nullopt, false}, {});
   EXPECT_EQ(std::filesystem::path(opening.options.view.input).filename(), "flight.yaml");
-  EXPECT_THAT(opening.note, HasSubstr("flight.acmi: 1 platform, emitters of the starter set"));
-  EXPECT_EQ(opening.options.made_note, opening.note) << "a warning as long as it is shown";
+  EXPECT_THAT(opening.options.made_note.text(true),
+              HasSubstr("flight.acmi: 1 platform, emitters of the starter set (nominal values"));
   EXPECT_EQ(opening.options.view.input.find(folder.path().string()), 0u);
   EXPECT_EQ(opening.options.namesake(), recording) << "outputs are beside it";
   folder.write("torn.acmi", "nothing of the kind\n");

@@ -88,6 +88,15 @@ TEST_F(SessionTime, AnEditOfTheClockOrTheActivityChangesTheTimeLine) {
   EXPECT_EQ(session->timeline().bars()[1].intervals.front().end_s, 6);
 }
 
+TEST_F(SessionTime, TheTimeLineGetsARowForEachEmitterAndKeepsItAfterAnUndo) {
+  EXPECT_EQ(session->mostEmitters(), 2U);
+  perform(R"({"do":"add","what":"jammer"})");
+  EXPECT_EQ(session->mostEmitters(), 3U);
+  perform(R"({"do":"undo"})");
+  EXPECT_EQ(session->timeline().bars().size(), 2U);
+  EXPECT_EQ(session->mostEmitters(), 3U);
+}
+
 TEST_F(SessionTime, AfterSeeksDuringPlayingTheLastOneIsShown) {
   std::mt19937 random(7);
   perform(R"({"do":"loop","on":true})");

@@ -105,16 +105,16 @@ TEST(ValueSlider, APixelOfADragChangesAPowerByTwoPercent) {
 
 TEST(EditTexts, NameTheThingTheValueAndItsChange) {
   const auto scenario = scenario::loadScenario(emscape::test::shippedScenario("quick.yaml"));
-  EXPECT_THAT(
-      editTexts(*scenario, {{"emitters.radar.name", "\"Радар\""},
-                            {"emitters.Радар.power_w", "5000"},
-                            {"emitters.Радар.antenna.gain_dbi", "null"},
-                            {"emitters.transmitter", "null"},
-                            {"targets.drone", "{platform: mast}"},
-                            {"emitters.nobody.power_w", "1"}}),
-      testing::ElementsAre("radar, name: radar → Радар", testing::MatchesRegex("radar, power: .* → 5 kW"),
-                           testing::MatchesRegex("radar, gain: .* → by default"), "transmitter: removed",
-                           "drone: added", "emitters.nobody.power_w=1"));
+  EXPECT_THAT(editTexts(*scenario, {{"emitters.radar.name", "\"Радар\""},
+                                    {"emitters.Радар.power_w", "5000"},
+                                    {"emitters.Радар.antenna.gain_dbi", "null"},
+                                    {"emitters.transmitter", "null"},
+                                    {"targets.drone", "{platform: mast}"},
+                                    {"emitters.nobody.power_w", "1"}}),
+              testing::ElementsAre(
+                  "radar, name: radar → Радар", testing::MatchesRegex("radar, power: .* → 5 kW"),
+                  testing::MatchesRegex("radar, gain: .* → by default"), "emitter transmitter: removed",
+                  "target drone: added", "emitters.nobody.power_w=1"));
 }
 
 TEST(RefusalText, SpeaksOfValuesNotOfPlacesInFiles) {

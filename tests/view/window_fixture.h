@@ -7,11 +7,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -80,6 +83,7 @@ class Window : public testing::Test {
 
   Arguments viewOf(const std::string& input, const std::string& script) {
     writeFile(folder_ / "script.jsonl", script);
+    forgetLog();
     return {"view",  input,    "--size", "640x480", "--backend", "cpu", "--script", folder_ / "script.jsonl",
             "--log", logFile()};
   }
@@ -98,21 +102,56 @@ class Window : public testing::Test {
   }
 
   std::string logFile() const { return folder_ / "log.jsonl"; }
-  /// Lines of the log; with a name those of that event.
-  std::vector<Json> log(const std::string& event = "") const {
-    std::vector<Json> lines;
-    std::istringstream text(readFile(logFile()));
-    for (std::string line; std::getline(text, line);) {
+  /// The next program writes the log anew.
+  void forgetLog() {
+    std::filesystem::remove(logFile());
+    lines_.clear();
+    read_ = 0;
+  }
+  /// Lines of the log so far, each parsed once.
+  const std::vector<Json>& log() const {
+    std::ifstream file(logFile(), std::ios::binary);
+    file.seekg(static_cast<std::streamoff>(read_));
+    for (std::string line; std::getline(file, line) && !file.eof();) {  // the last may be incomplete
+      read_ += line.size() + 1;
       Json object = Json::parse(line, nullptr, false);
-      if (!object.is_discarded() && (event.empty() || object["event"] == event)) lines.push_back(object);
+      if (!object.is_discarded()) lines_.push_back(std::move(object));
+    }
+    return lines_;
+  }
+  /// Those of an event.
+  std::vector<Json> log(const std::string& event) const {
+    std::vector<Json> lines;
+    for (const Json& line : log()) {
+      if (line["event"] == event) lines.push_back(line);
     }
     return lines;
   }
-  /// Waits for an event, at most a minute. @return false if it did not come
+  /// The last of an event; null if there is none.
+  Json last(const std::string& event) const {
+    const std::vector<Json>& lines = log();
+    const auto found =
+        std::find_if(lines.rbegin(), lines.rend(), [&](const Json& line) { return line["event"] == event; });
+    return found == lines.rend() ? Json() : *found;
+  }
+  /// Waits until the log meets a condition, at most a minute.
+  static bool comes(const std::function<bool()>& condition) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > end) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return true;
+  }
   bool comesToLog(const std::string& event) const {
-    for (int i = 0; i < 600 && log(event).empty(); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    return !log(event).empty();
+    return comes([&] { return !last(event).is_null(); });
+  }
+  /// Number of stored views of unsaved edits.
+  int keptViews() const {
+    int views = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "state/emscape/autosave"))
+      views += entry.path().extension() == ".json" ? 1 : 0;
+    return views;
   }
   /// "BUSY RESTORE IDLE": the states in the order in which they came.
   std::string states() const {
@@ -124,6 +163,10 @@ class Window : public testing::Test {
 
   TemporaryFolder folder_;
   std::unique_ptr<VirtualDisplay> display_;
+
+ private:
+  mutable std::vector<Json> lines_;  // of the log
+  mutable std::size_t read_ = 0;     // bytes of it
 };
 
 }  // namespace emscape::test

@@ -140,6 +140,7 @@ TEST(Nvdb, SurvivesDamage) {
   const DenseVolume volume = fieldVolume();
   writeNvdb(folder / "a.nvdb", {&volume});
   survivesDamage(folder / "a.nvdb", [&] { readNvdb(folder / "a.nvdb"); });
+  std::filesystem::remove(folder / "a.nvdb");  // it is no file of ours any more
   writeNvdb(folder / "a.nvdb", {&volume});
   std::filesystem::remove(folder / "a.nvdb.json");
   survivesDamage(folder / "a.nvdb", [&] { readNvdb(folder / "a.nvdb"); });
@@ -163,6 +164,7 @@ TEST(Nvdb, AFaultOfTheSidecarNamesTheVolume) {
   DenseVolume snr = fieldVolume();
   snr.info.quantity = "snr_db";
   const auto refusal = [&](const char* key, const nlohmann::ordered_json& value) {
+    std::filesystem::remove(folder / "b.nvdb.json");  // edited by the last one
     writeNvdb(folder / "b.nvdb", {&power, &snr});
     auto json = nlohmann::ordered_json::parse(emscape::test::readFile(folder / "b.nvdb.json"));
     json["volumes"][1][key] = value;

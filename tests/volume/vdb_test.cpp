@@ -4,6 +4,9 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
+#include <cmath>
+
+#include "emscape/base/work.h"
 #include "emscape/volume/format/file.h"
 #include "tests/volume/sample_volumes.h"
 
@@ -42,6 +45,19 @@ TEST(Vdb, RoundTripWithoutFieldIsExact) {
   std::fill(volume.values.begin(), volume.values.end(), volume.info.floor);
   writeVdb(folder / "a.vdb", {&volume});
   expectSame(readVdb(folder / "a.vdb"), volume);
+}
+
+TEST(Vdb, IsNotWrittenToItsEndWhenTheWorkIsStopped) {
+  TemporaryFolder folder;
+  DenseVolume volume = plainVolume();
+  volume.grid.dims = {256, 256, 128};
+  volume.values.resize(static_cast<std::size_t>(volume.grid.dims.count()));
+  for (std::size_t n = 0; n < volume.values.size(); ++n) volume.values[n] = std::sin(static_cast<float>(n));
+  Work work;
+  work.stop();
+  const WorkScope scope(&work);
+  EXPECT_THROW(writeVdb(folder / "a.vdb", {&volume}), Stopped);
+  EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(Vdb, HoldsSeveralQuantitiesAndReadsTheNamedOne) {
@@ -105,6 +121,7 @@ class ForeignVdb : public ::testing::Test {
   /// The sample as OpenVDB reads it from our file.
   openvdb::FloatGrid::Ptr ours() {
     const DenseVolume volume = fieldVolume();
+    std::filesystem::remove(path_);  // as write() left it, it is no file of ours
     writeVdb(path_, {&volume});
     openvdb::io::File file(path_.string());
     file.open(false);
@@ -373,7 +390,7 @@ TEST(Vdb, RefusesCategoricalValuesThatAreNoIndices) {
   DenseVolume volume = categoricalVolume();
   volume.values[5] = 0.5F;
   EXPECT_THAT(errorOf([&] { writeVdb(folder / "a.vdb", {&volume}); }), HasSubstr("0.500000 is not an index"));
-  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(StoredRange, OpenVdbReadsAPatchedFile) {

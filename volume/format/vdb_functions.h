@@ -7,21 +7,27 @@
 #include <vector>
 
 #include "emscape/base/log.h"
+#include "emscape/base/work.h"
 #include "emscape/volume/dense_volume.h"
 #include "volume/sparse/nanovdb_wrapper.h"
 
 namespace emscape::volume {
 
+/// Each does a part of `work`, which may be null: the library has its own copy of base, which does not know
+/// the work of the calling thread.
 struct VdbFunctions {
-  DenseVolume (*read)(const std::filesystem::path&, const std::string& grid_name);  ///< readVdb()
-  std::vector<DenseVolume> (*describe)(const std::filesystem::path&);               ///< describeVdb()
-  void (*write)(const std::filesystem::path&,
-                const std::vector<const DenseVolume*>& volumes);      ///< writeVdb()
-  nano::Handle (*toNano)(const DenseVolume&, const SourceLocation&);  ///< toNano()
+  /// readVdb()
+  DenseVolume (*read)(Work* work, const std::filesystem::path&, const std::string& grid_name);
+  /// describeVdb()
+  std::vector<DenseVolume> (*describe)(Work* work, const std::filesystem::path&);
+  /// writeVdb()
+  void (*write)(Work* work, const std::filesystem::path&, const std::vector<const DenseVolume*>& volumes);
+  /// toNano()
+  nano::Handle (*toNano)(Work* work, const DenseVolume&, const SourceLocation&);
 };
 
 /// The only function that the library exports: EMSCAPE_VDB_ENTRY, which has the version in its name.
-/// @param log  receives the library's messages: it has its own copy of base
+/// @param log  receives the library's messages
 using VdbEntry = void(VdbFunctions& functions, const LogSink& log);
 
 namespace vdb {

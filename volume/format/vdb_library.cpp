@@ -60,19 +60,19 @@ void requireVdb() {
 }
 
 DenseVolume readVdb(const std::filesystem::path& path, const std::string& grid_name) {
-  return vdbFunctions().read(path, grid_name);
+  return vdbFunctions().read(currentWork(), path, grid_name);
 }
 
 std::vector<DenseVolume> describeVdb(const std::filesystem::path& path) {
-  return vdbFunctions().describe(path);
+  return vdbFunctions().describe(currentWork(), path);
 }
 
 void writeVdb(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes) {
-  vdbFunctions().write(path, volumes);
+  vdbFunctions().write(currentWork(), path, volumes);
 }
 
 nano::Handle toNano(const DenseVolume& volume, const SourceLocation& location) {
-  return vdbFunctions().toNano(volume, location);
+  return vdbFunctions().toNano(currentWork(), volume, location);
 }
 
 }  // namespace emscape::volume

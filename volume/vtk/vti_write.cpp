@@ -110,7 +110,8 @@ void writePvd(const std::filesystem::path& path, const std::vector<PvdEntry>& en
     node.append_attribute("part") = 0;
     node.append_attribute("file") = (below ? beside : entry.file).generic_string().c_str();
   }
-  writeWhole(path, [&](std::ostream& stream) { document.save(stream, "  "); });
+  writeWhole(
+      path, [&](std::ostream& stream) { document.save(stream, "  "); }, Replaces::any);
 }
 
 }  // namespace emscape::volume

@@ -13,6 +13,7 @@
 #include "apps/emscape/subcommands.h"
 #include "base/files/folder_lock.h"
 #include "base/stopwatch.h"
+#include "base/threads.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
 #include "report/maps/output_files.h"
@@ -144,7 +145,8 @@ int runPart(const study::LoadedStudy& loaded, study::StudyFolder& folder, const 
 
 int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   Stopwatch watch;
-  const int threads = global.threads > 0 ? global.threads : study::allowedProcessors();
+  const int wanted = global.threads > 0 ? global.threads : study::allowedProcessors();
+  const int threads = sparesThreads() ? 1 : wanted;
   setThreadLimit(threads);
   if (command.worker) {
     ignoreFurtherSignals();
@@ -155,14 +157,15 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   }
   const study::LoadedStudy loaded(command.study, command.edits, !command.worker);
   if (command.plan) return runPlan(loaded, command, watch.lap_ms() / 1000, global);
-  report::checkStudyFolder(command.folder, loaded.spec, "--output", scriptsOf(command.slurm));
+  const std::vector<report::NamedFile> scripts = scriptsOf(command.slurm);
+  report::checkStudyFolder(command.folder, loaded.spec, "--output", scripts);
+  for (const report::NamedFile& script : scripts) report::requireFolders({script.file});
   study::StudyFolder folder = loaded.folder(command.folder);
   const std::optional<int> planned = folder.partsOfManifest();
   const std::size_t variants = loaded.spec.variants.count();
   if (!command.part.empty()) return runPart(loaded, folder, command, global);
-  const int parts = planned                    ? *planned
-                    : command.slurm.chunks > 0 ? command.slurm.chunks
-                                               : study::usualParts(variants);
+  const int parts =
+      command.slurm.chunks > 0 ? command.slurm.chunks : planned.value_or(study::usualParts(variants));
   study::checkParts(parts, variants);
   if (command.merge && !planned && command.slurm.script.empty()) {
     throw Error(ErrorCode::bad_input, command.folder + ": has no manifest.json: no part was computed");

@@ -24,6 +24,7 @@ struct OpenRequest {
   /// View of an input; empty: that of the start. Edits that no longer apply are omitted.
   std::optional<playback::ViewState> view;
   bool unsaved_edits = false;  ///< the edits of `view` are not saved
+  bool restores = false;       ///< `view` was kept when the program did not exit normally
 };
 
 /// For use by the window's thread.

@@ -6,7 +6,9 @@
 #include "base/files/file_reading.h"
 #include "base/files/folder.h"
 #include "base/files/whole_file.h"
+#include "base/text/failure_text.h"
 #include "emscape/base/error.h"
+#include "emscape/base/log.h"
 #include "playback/editing/autosave.h"
 
 namespace emscape::view {
@@ -40,10 +42,17 @@ std::vector<std::string> addRecentFile(const std::string& input) {
   files.erase(std::remove(files.begin(), files.end(), path), files.end());
   if (path.find('\n') == std::string::npos) files.insert(files.begin(), path);
   files.resize(std::min(files.size(), kMaxRecentFiles));
-  makeFolder(recentFilesFile().parent_path());
-  writeWhole(recentFilesFile(), [&files](std::ostream& out) {
-    for (const std::string& file : files) out << file << '\n';
-  });
+  try {
+    makeFolder(recentFilesFile().parent_path());
+    writeWhole(
+        recentFilesFile(),
+        [&files](std::ostream& out) {
+          for (const std::string& file : files) out << file << '\n';
+        },
+        Replaces::any);
+  } catch (const Error& error) {
+    logWarning(failureText(error));
+  }
   return files;
 }
 

@@ -13,8 +13,8 @@ inline constexpr std::size_t kMaxRecentFiles = 10;
 std::filesystem::path recentFilesFile();
 /// Absolute paths, the newest first; empty if nothing was opened yet or the file cannot be read.
 std::vector<std::string> readRecentFiles();
-/// Adds an input at the front; the file is written atomically. @return all inputs
-/// @throws Error (other) if it cannot be written
+/// Adds an input at the front; the file is written atomically; a warning tells if it cannot be written.
+/// @return all inputs
 std::vector<std::string> addRecentFile(const std::string& input);
 
 }  // namespace emscape::view

@@ -33,9 +33,9 @@ void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(i
   const auto source = playback::openFrameSource(selection, job.target, {}, &stop);
   std::vector<std::unique_ptr<playback::PictureSink>> sinks;
   const playback::LoadedScenario* const scene = source->scene();
-  sinks.push_back(playback::makePictureSink(job.output, source->name(), source->count(), job.view.size,
-                                            job.frames_per_s,
-                                            scene != nullptr ? changesOf(*scene->scenario) : ""));
+  sinks.push_back(
+      playback::makePictureSink(job.output, source->name(), source->count(), job.view.size, job.frames_per_s,
+                                scene != nullptr ? changesOf(*scene->scenario) : "", job.replaces));
   done(0, source->count());
   playback::Painter painter(job.view, *source, job.target, /*must_show_isosurface=*/false);
   const std::optional<double> frames_per_s =

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "base/files/own_file.h"
 #include "base/worker.h"
 #include "emscape/playback/frames/compute_target.h"
 #include "emscape/playback/frames/frame_source.h"
@@ -59,6 +60,7 @@ struct RecordJob {
   playback::ComputeTarget target;
   double frames_per_s = 10;
   std::string output;  ///< NAME.mp4, NAME.png (one time) or a folder
+  Replaces replaces = Replaces::own;
 };
 
 /// Makes one recording at a time, on its own thread and from its own source, as `emscape render` does. For

@@ -16,7 +16,11 @@ namespace emscape::view {
 
 namespace fs = std::filesystem;
 
-std::string importRecordingFile(const std::string& file, std::string& note) {
+std::vector<std::string> sourcesOfRecording(const std::string& file) {
+  return {file, file + ".emitters.yaml"};
+}
+
+std::string importRecordingFile(const std::string& file, ImportNote& note) {
   const fs::path recording = fs::absolute(file).lexically_normal();
   const std::string stem = recording.filename().string().substr(0, recording.filename().string().find('.'));
   const std::size_t number = std::hash<std::string>()(recording.string());
@@ -26,34 +30,37 @@ std::string importRecordingFile(const std::string& file, std::string& note) {
   interop::ImportOptions options;
   options.scenario = (folder / ((stem.empty() ? "recording" : stem) + ".yaml")).string();
   options.replace = true;
-  const std::string database = file + ".emitters.yaml";
+  const std::string database = sourcesOfRecording(file).back();
   std::error_code ignored;
   if (fs::exists(database, ignored)) options.emitters = database;
+  options.adds_silent_emitter = true;
   const interop::ImportResult result = [&] {
-    const auto recorded = interop::readRecording(file);
     try {
-      return interop::importRecording(recorded, options);
+      return interop::importRecording(interop::readRecording(file), options);
     } catch (const Error& error) {
-      if (error.message().rfind("no emitter is left", 0) != 0) throw;
-      const std::string known =
-          options.emitters.empty() ? "the starter set" : fs::path(options.emitters).filename().string();
-      throw Error(
-          error.code(), error.location(),
-          fmt::format(
-              "no object of the recording has an emitter in {}. The window makes emitters by the "
-              "file {}, if there is one (docs/battlefield.md tells what it contains); tracks "
-              "without emitters belong into a scenario: platforms: [{{name: ..., track: {{file: {}}}}}]",
-              known, database, recording.filename().string()));
+      if (error.message().find(" --") == std::string::npos) throw;
+      throw Error(error.code(), error.location(), error.message() + " (options of `emscape import`)");
     }
   }();
   int unmatched = 0;
   for (const interop::ImportedEmitters& use : result.emitters) unmatched += use.fault.empty() ? 0 : use.count;
-  note = fmt::format(
-      "{}: {}, emitters of {}{}, over flat land at mean sea level; `emscape import` has further "
-      "options (emitters, terrain, region)",
-      recording.filename().string(), countText(result.platforms.size(), "platform", "platforms"),
-      options.emitters.empty() ? "the starter set (nominal values of a kind of radar, without a source)"
-                               : fs::path(database).filename().string(),
+  const std::string known = options.emitters.empty() ? "" : fs::path(database).filename().string();
+  const std::string source = known.empty() ? "the starter set" : known;
+  note.platforms = fmt::format("{}: {}", recording.filename().string(),
+                               countText(result.platforms.size(), "platform", "platforms"));
+  if (result.silent_emitter.empty()) {
+    note.platforms +=
+        ", emitters of " + source +
+        (known.empty() ? " (nominal values of a kind of radar, without a source)" : std::string());
+  } else {
+    note.silence = fmt::format(
+        ", without an emitter, as {} has none for {}: switch on '{}' in What if, or add others there or by a "
+        "right click in the picture",
+        source, result.platforms.size() == 1 ? "it" : "them", result.silent_emitter);
+  }
+  note.rest = fmt::format(
+      "{}; over flat land at mean sea level; `emscape import` has further options (emitters, terrain, "
+      "region, a base)",
       unmatched > 0 ? fmt::format(", {} left out", countText(unmatched, "beam", "beams")) : "");
   return options.scenario;
 }

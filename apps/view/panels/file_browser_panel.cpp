@@ -184,26 +184,30 @@ void drawEntries(PanelContext& context, TypedPath& typed) {
 void drawPathBar(PanelContext& context) {
   FileBrowser& browser = context.session.files().browser;
   if (ImGui::Button("Up")) browser.goUp();
+  tabStop();
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted(drawable(browser.folder()).c_str());
 }
 
-bool isRefused(const PanelContext& context, const TypedPath& typed) {
+bool isPathRefused(const PanelContext& context, const TypedPath& typed) {
   const std::string& refused = context.session.files().browser.refused();
   return !refused.empty() && refused == typed.data();
 }
 
-/// Draws the path field and its button. The field has the focus while the dialog has it.
+/// Draws the path field and its button. The field has the focus while no button of the dialog has it.
 void drawTypedPath(PanelContext& context, TypedPath& typed) {
-  const bool has_focus = ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
+  const bool has_focus = ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows) && !isButtonFocused();
   if (has_focus && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-90 * context.scale);
   ImGui::InputTextWithHint("##path", "type a path, from the folder above on", typed.data(), typed.size(),
-                           isRefused(context, typed) ? 0 : ImGuiInputTextFlags_AutoSelectAll);
+                           isPathRefused(context, typed) ? 0 : ImGuiInputTextFlags_AutoSelectAll);
+  tabStop();
   ImGui::SameLine();
   const char* const button = textOf(context.session.files().browser.purpose()).button;
-  if (ImGui::Button(button, {-1, 0}) || (has_focus && isEnterPressed())) openChosen(context.session, typed);
+  const bool is_pressed = ImGui::Button(button, {-1, 0});
+  tabStop();
+  if (is_pressed || (has_focus && isEnterPressed())) openChosen(context.session, typed);
 }
 
 }  // namespace
@@ -235,12 +239,13 @@ void drawFileBrowser(PanelContext& context) {
   drawTypedPath(context, typed);
   if (is_input) {
     if (ImGui::Button("Open this folder of volumes")) openFile(session, browser.folder().string());
+    tabStop();
     ImGui::SameLine();
   }
-  if (isRefused(context, typed)) {
+  if (isPathRefused(context, typed)) {
     ImGui::TextColored(errorColor(session.theme()), "there is no such file or folder");
   } else {
-    ImGui::TextDisabled("arrows and Enter; Left: up; Esc closes");
+    ImGui::TextDisabled("arrows and Enter; Left: up; Tab: buttons; Esc closes");
   }
   if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) handleKeys(session, was_typed);
   endDialog();

@@ -6,6 +6,7 @@
 #include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/glyphs.h"
 #include "apps/view/widgets/theme.h"
+#include "apps/view/widgets/wrapped_text.h"
 
 namespace emscape::view {
 namespace {
@@ -24,7 +25,7 @@ void drawFirstMinutes(PanelContext& context) {
   ImGui::TextColored(accentColor(context.session.theme()), "The first five minutes");
   for (const char* line : kFirstMinutes) {
     ImGui::Bullet();
-    ImGui::TextWrapped("%s", line);
+    textWrapped(line);
   }
   ImGui::Spacing();
 }
@@ -35,13 +36,13 @@ bool drawRow(PanelContext& context, const std::string& searched, const std::stri
   if (!isFound(searched, keys + " " + does + " " + command_line)) return false;
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  ImGui::TextWrapped("%s", drawable(keys).c_str());
+  textWrapped(keys);
   ImGui::TableNextColumn();
-  ImGui::TextWrapped("%s", drawable(does).c_str());
+  textWrapped(does);
   if (command_line.empty()) return true;
   ImGui::TableNextColumn();
   ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
-  ImGui::TextWrapped("%s", drawable(command_line).c_str());
+  textWrapped(command_line);
   ImGui::PopStyleColor();
   return true;
 }

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "apps/view/panels/panels.h"
-#include "apps/view/widgets/glyphs.h"
 #include "apps/view/widgets/theme.h"
+#include "apps/view/widgets/wrapped_text.h"
 #include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {
@@ -53,15 +53,27 @@ void drawCurve(ImDrawList& list, const Chart& chart, const ValueHistory& history
   }
 }
 
+std::string stateOf(const ValueHistory& history) {
+  if (!history.error.empty()) return drawable(history.error);
+  return history.computed < history.times_s.size() ? "being computed …" : "no field at any step";
+}
+
+/// Draws a text in the place of the chart.
+void drawInPlace(const ImVec2& corner, const ImVec2& size, const std::string& text) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(corner, {corner.x + size.x, corner.y + size.y}, ImGui::GetColorU32(ImGuiCol_FrameBg));
+  const ImVec2 padding = ImGui::GetStyle().FramePadding;
+  list.PushClipRect(corner, {corner.x + size.x, corner.y + size.y}, true);
+  list.AddText({corner.x + padding.x, corner.y + padding.y}, ImGui::GetColorU32(ImGuiCol_TextDisabled),
+               wrapped(text, size.x - 2 * padding.x).c_str());
+  list.PopClipRect();
+}
+
 }  // namespace
 
 void drawHistory(PanelContext& context) {
   Session& session = context.session;
   const ValueHistory history = shownOf(session.history(), session.view().field_unit);
-  if (!history.error.empty()) {
-    ImGui::TextDisabled("over time: %s", drawable(history.error).c_str());
-    return;
-  }
   if (history.times_s.size() < 2) return;
   const float s = context.scale, line = ImGui::GetTextLineHeight();
   float min = HUGE_VALF, max = -HUGE_VALF;
@@ -71,18 +83,18 @@ void drawHistory(PanelContext& context) {
     max = std::max(max, history.values[i]);
   }
   const bool has_values = min <= max;
-  ImGui::TextDisabled("at the point itself, over time%s", history.computed < history.times_s.size()
-                                                              ? ", being computed …"
-                                                          : has_values ? ""
-                                                                       : ": no field at any step");
-  if (!has_values) return;
-  const float button = ImGui::CalcTextSize("copy as CSV").x + 2 * ImGui::GetStyle().FramePadding.x;
-  ImGui::SameLine();
-  if (ImGui::GetContentRegionAvail().x < button) ImGui::NewLine();
+  // The place of the button and the chart is there from the first step on: the rows below stay where they
+  // are.
+  ImGui::TextDisabled("at the point itself, over time");
+  sameLineIfRoom(ImGui::CalcTextSize("copy as CSV").x + 2 * ImGui::GetStyle().FramePadding.x,
+                 ImGui::GetStyle().ItemSpacing.x);
+  ImGui::BeginDisabled(!has_values);
   if (ImGui::SmallButton("copy as CSV")) perform(context, R"({"do":"copy_history"})");
+  ImGui::EndDisabled();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const ImVec2 size{ImGui::GetContentRegionAvail().x, 92 * s};
   ImGui::InvisibleButton("history", size);
+  if (!has_values) return drawInPlace(corner, size, stateOf(history));
   const double pad = std::max(0.5, 0.05 * static_cast<double>(max - min));
   const Chart chart{{corner.x + ImGui::CalcTextSize("-000.0").x + 4 * s, corner.y + size.y - line - 2 * s},
                     {corner.x + size.x - 2 * s, corner.y + 2 * s},
@@ -109,6 +121,11 @@ void drawHistory(PanelContext& context) {
     list.AddText({x, chart.low.y + 2 * s}, muted, text.c_str());
   }
   drawCurve(list, chart, history, accent, s);
+  if (history.computed < history.times_s.size()) {
+    const std::string state = stateOf(history);
+    list.AddText({chart.high.x - ImGui::CalcTextSize(state.c_str()).x - 4 * s, chart.high.y}, muted,
+                 state.c_str());
+  }
   const double now_s = session.picture()->info().time_s;
   if (now_s >= chart.begin_s && now_s <= chart.end_s) {
     list.AddLine({chart.x(now_s), chart.high.y}, {chart.x(now_s), chart.low.y}, muted, 1.5F * s);

@@ -2,12 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <optional>
 
 #include "apps/view/panels/panels.h"
 #include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/names.h"
+#include "apps/view/widgets/refusal.h"
 #include "base/text/display_units.h"
 
 namespace emscape::view {
@@ -15,26 +14,11 @@ namespace {
 
 constexpr float kFieldWidth = 360;
 
-/// Text of a field.
-using TypedMapText = std::array<char, 4096>;
-
-/// A text field with a button. @return true if Enter or the button took the text
-/// @param browses  purpose of a button that opens the file browser; none: there is no such button
-bool textAndButton(PanelContext& context, const char* id, const char* hint, TypedMapText& typed,
-                   const char* button, std::optional<FileBrowser::Purpose> browses = std::nullopt) {
-  ImGui::PushID(id);
-  ImGui::SetNextItemWidth(kFieldWidth * context.scale);
-  const bool entered =
-      ImGui::InputTextWithHint("##text", hint, typed.data(), typed.size(),
-                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+/// The button after a field that fills it from the file browser.
+void browseButton(Session& session, FileBrowser::Purpose purpose) {
   ImGui::SameLine();
-  const bool pressed = ImGui::Button(button, {64 * context.scale, 0});
-  if (browses) {
-    ImGui::SameLine();
-    if (ImGui::Button("Browse")) context.session.browse(*browses);
-  }
-  ImGui::PopID();
-  return entered || pressed;
+  if (ImGui::Button("Browse")) session.browse(purpose);
+  tabStop();
 }
 
 /// Texts, each with a button. @return the index of the one to be removed; its size: none
@@ -43,6 +27,7 @@ std::size_t listToRemove(const std::vector<std::string>& texts) {
   for (std::size_t i = 0; i < texts.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
     if (ImGui::SmallButton("remove")) removed = i;
+    tabStop();
     ImGui::SameLine();
     ImGui::TextUnformatted(drawable(texts[i]).c_str());
     ImGui::PopID();
@@ -51,18 +36,25 @@ std::size_t listToRemove(const std::vector<std::string>& texts) {
 }
 
 void drawDrape(PanelContext& context) {
-  static TypedMapText typed{};
+  static FieldText typed{};
   Session& session = context.session;
+  ImGui::PushID("drape");
   ImGui::TextDisabled("Picture on the ground (GeoTIFF, MBTiles)");
   if (!session.view().drape.empty() && listToRemove({session.view().drape}) == 0)
     session.perform({"drape", {{"file", ""}}});
-  if (textAndButton(context, "drape", "file", typed, "Show", FileBrowser::Purpose::drape) && typed[0] != '\0')
-    session.perform({"drape", {{"file", typed.data()}}});
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(kFieldWidth * context.scale);
+  actionField(context, "##file", "file", typed, "Show", [&session](const std::string& file) {
+    return file.empty() || session.perform({"drape", {{"file", file}}});
+  });
+  browseButton(session, FileBrowser::Purpose::drape);
+  ImGui::PopID();
 }
 
 void drawPlaces(PanelContext& context) {
-  static TypedMapText typed{};
+  static FieldText typed{};
   Session& session = context.session;
+  ImGui::PushID("places");
   ImGui::TextDisabled("Places (GeoJSON, GeoPackage, ...)");
   std::vector<std::string> files = session.view().places;
   const std::size_t removed = listToRemove(files);
@@ -70,11 +62,14 @@ void drawPlaces(PanelContext& context) {
     files.erase(files.begin() + static_cast<std::ptrdiff_t>(removed));
     session.perform({"places", {{"files", files}}});
   }
-  if (textAndButton(context, "places", "file", typed, "Add", FileBrowser::Purpose::places) &&
-      typed[0] != '\0') {
-    addPlaces(session, typed.data());
-    typed.fill('\0');
-  }
+  ImGui::SetNextItemWidth(kFieldWidth * context.scale);
+  actionField(context, "##file", "file", typed, "Add", [&session](const std::string& file) {
+    const bool is_taken = file.empty() || addPlaces(session, file);
+    if (is_taken) typed.fill('\0');
+    return is_taken;
+  });
+  browseButton(session, FileBrowser::Purpose::places);
+  ImGui::PopID();
 }
 
 void drawRings(PanelContext& context) {
@@ -105,13 +100,20 @@ void drawRings(PanelContext& context) {
       ImGui::PopID();
     }
     ImGui::EndCombo();
+  } else {
+    tabStop();
   }
   ImGui::SameLine();
   ImGui::SetNextItemWidth(0.3F * kFieldWidth * context.scale);
   const NumberForm form{"every ", "m", "", -1, unit.name, unit.factor, {}, 1, 1e7};
   numberField(context, "##spacing", spacing_m, form);
+  tabStop();
   ImGui::SameLine();
-  if (ImGui::Button("Add")) {
+  ImGui::BeginDisabled(isRefused(ImGui::GetID("##spacing")));  // it would act with the value before
+  const bool is_added = ImGui::Button("Add");
+  tabStop();
+  ImGui::EndDisabled();
+  if (is_added) {
     texts.push_back(toString(playback::RangeRings{emitter, spacing_m, 0}));
     session.perform({"range_rings", {{"rings", texts}}});
   }
@@ -119,27 +121,34 @@ void drawRings(PanelContext& context) {
 
 }  // namespace
 
-void addPlaces(Session& session, const std::string& file) {
+bool addPlaces(Session& session, const std::string& file) {
   std::vector<std::string> files = session.view().places;
-  if (std::find(files.begin(), files.end(), file) != files.end())
-    return session.tell(file + " is shown already", true);
+  if (std::find(files.begin(), files.end(), file) != files.end()) {
+    session.tell(file + " is shown already", true);
+    return false;
+  }
   files.push_back(file);
-  session.perform({"places", {{"files", files}}});
+  return session.perform({"places", {{"files", files}}});
 }
 
 void drawGoToPosition(PanelContext& context) {
   Session& session = context.session;
-  if (!beginDialog(context, "Go to position", session.panels.position, {}, Waits::no)) return;
-  static TypedMapText typed{};
+  if (!beginDialog(context, "Go to position", session.panels.position)) return;
+  static FieldText typed{};
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-  if (textAndButton(context, "position", "36.3N 84.2W, 36°30'12\"N 84°12'W, 16S GF 12345 67890", typed, "Go"))
-    session.panels.position = !session.perform({"goto_position", {{"position", typed.data()}}});
+  ImGui::SetNextItemWidth(kFieldWidth * context.scale);
+  actionField(context, "##position", "36.3N 84.2W, 36°30'12\"N 84°12'W, 16S GF 12345 67890", typed, "Go",
+              [&session](const std::string& position) {
+                const bool is_taken = session.perform({"goto_position", {{"position", position}}});
+                session.panels.position = !is_taken;
+                return is_taken;
+              });
   endDialog();
 }
 
 void drawMapDialog(PanelContext& context) {
   Session& session = context.session;
-  if (!beginDialog(context, "Map", session.panels.map, {}, Waits::no)) return;
+  if (!beginDialog(context, "Map", session.panels.map)) return;
   drawDrape(context);
   ImGui::Spacing();
   drawPlaces(context);

@@ -4,6 +4,7 @@
 #include "apps/view/widgets/glyphs.h"
 #include "apps/view/widgets/path_plot.h"
 #include "apps/view/widgets/theme.h"
+#include "apps/view/widgets/wrapped_text.h"
 
 namespace emscape::view {
 
@@ -23,10 +24,10 @@ void drawMeasurePanel(PanelContext& context) {
   for (const auto& [name, end] : {std::pair("from", &measured.from), std::pair("to", &measured.to)}) {
     ImGui::TextDisabled("%s", name);
     ImGui::SameLine();
-    ImGui::TextWrapped("%s, %s above sea level", positionText(end->position, view).c_str(),
-                       heightText(end->height_msl_m, view).c_str());
+    textWrapped(positionText(end->position, view) + ", " + heightText(end->height_msl_m, view) +
+                " above sea level");
   }
-  ImGui::TextWrapped("%s", drawable(verdictOf(measured, view.units)).c_str());
+  textWrapped(verdictOf(measured, view.units));
   drawPathPlot(measured.path, {ImGui::GetContentRegionAvail().x, 150 * context.scale}, session.theme(),
                view.units, context.scale);
 }

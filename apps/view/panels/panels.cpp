@@ -14,6 +14,7 @@
 #include "apps/view/widgets/names.h"
 #include "apps/view/widgets/refusal.h"
 #include "apps/view/widgets/theme.h"
+#include "apps/view/widgets/wrapped_text.h"
 #include "base/text/time_text.h"
 #include "emscape/render/annotate/legend.h"
 
@@ -202,10 +203,11 @@ void drawNotice(PanelContext& context, const Area& picture) {
   }
   const std::optional<Rejection>& rejection = session.rejection();
   if (context.shows_rejection && rejection && text == rejection->message) return;
-  if (text.empty()) return;
+  if (text.empty() || isBesideField(text)) return;
   const float free_width = legendBegin(context, picture.x + picture.width) - picture.x;
   const float wrap = std::max(120 * s, std::min(free_width - 60 * s, 760 * s));
-  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+  text = wrapped(text, wrap);
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   // Beside the legend, below the picture's title and what else lies at its top; the labels of the axes are at
   // the bottom, and below them the values and the state.
   const float top =
@@ -223,9 +225,7 @@ void drawNotice(PanelContext& context, const Area& picture) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
-  ImGui::PushTextWrapPos(wrap + 16 * s);
-  ImGui::TextUnformatted(drawable(text).c_str());
-  ImGui::PopTextWrapPos();
+  ImGui::TextUnformatted(text.c_str());
   ImGui::PopStyleColor();
   ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());  // also over dialogs, which told it
   ImGui::End();
@@ -234,20 +234,19 @@ void drawNotice(PanelContext& context, const Area& picture) {
 
 void drawGoToTime(PanelContext& context) {
   Session& session = context.session;
-  static char typed[64] = "";
+  static FieldText typed{};
   if (!beginDialog(context, "Go to time", session.panels.time)) return;
+  ImGui::TextUnformatted("seconds, M:SS or UTC");
   if (ImGui::IsWindowAppearing()) {
-    *fmt::format_to_n(typed, sizeof typed - 1, "{:.9g}", session.timeline().asked_s()).out = '\0';
+    *fmt::format_to_n(typed.data(), typed.size() - 1, "{:.9g}", session.timeline().asked_s()).out = '\0';
     ImGui::SetKeyboardFocusHere();
   }
-  ImGui::SetNextItemWidth(160 * context.scale);
-  const bool entered =
-      ImGui::InputText("seconds, M:SS or UTC", typed, sizeof typed,
-                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-  ImGui::SameLine();
-  if (ImGui::Button("Go") || entered) {
-    session.panels.time = !session.perform({"seek", {{"time", typed}}});
-  }
+  ImGui::SetNextItemWidth(200 * context.scale);
+  actionField(context, "##time", "", typed, "Go", [&session](const std::string& time) {
+    const bool is_taken = session.perform({"seek", {{"time", time}}});
+    session.panels.time = !is_taken;
+    return is_taken;
+  });
   endDialog();
 }
 

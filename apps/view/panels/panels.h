@@ -25,7 +25,7 @@ Layout layoutOf(const Session& session, float width, float height, float scale);
 inline constexpr ImGuiWindowFlags kFixedPanel =
     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-    ImGuiWindowFlags_NoBackground;
+    ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoFocusOnAppearing;
 
 void drawMenuBar(PanelContext& context);
 /// The entries of a menu or list of quantities.
@@ -42,8 +42,8 @@ bool scenarioPanelTakesTab(const Session& session);
 /// Colours and opacities: transfer_panel.cpp.
 void drawColorsPanel(PanelContext& context);
 void drawPlanesPanel(PanelContext& context);
-/// Shows places of one more file; one that is shown already is told.
-void addPlaces(Session& session, const std::string& file);
+/// Shows places of one more file. @return false if it is refused, as one that is shown already
+bool addPlaces(Session& session, const std::string& file);
 void drawProbePanel(PanelContext& context);
 /// The locked probe's value over time.
 void drawHistory(PanelContext& context);

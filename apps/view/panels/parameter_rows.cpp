@@ -11,6 +11,7 @@
 #include "apps/view/widgets/refusal.h"
 #include "apps/view/widgets/slider_field.h"
 #include "apps/view/widgets/theme.h"
+#include "apps/view/widgets/wrapped_text.h"
 #include "base/files/json_writing.h"
 #include "base/geodesy/position_text.h"
 #include "base/text/quantity_text.h"
@@ -155,9 +156,7 @@ void ParameterRows::label(const std::string& name, const std::string& tooltip, b
   ImGui::PopStyleColor();
   if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) {
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(360 * context_.scale);
-    ImGui::TextUnformatted(drawable(tooltip).c_str());
-    ImGui::PopTextWrapPos();
+    ImGui::TextUnformatted(wrapped(tooltip, 360 * context_.scale).c_str());
     ImGui::EndTooltip();
   }
 }

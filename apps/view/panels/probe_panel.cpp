@@ -9,6 +9,7 @@
 #include "apps/view/widgets/names.h"
 #include "apps/view/widgets/path_plot.h"
 #include "apps/view/widgets/theme.h"
+#include "apps/view/widgets/wrapped_text.h"
 #include "emfield/link/path_report.h"
 #include "emscape/render/annotate/legend.h"
 
@@ -38,7 +39,7 @@ class Table {
     ImGui::TableNextColumn();
     ImGui::TextColored(muted_, "%s", drawable(name).c_str());
     ImGui::TableNextColumn();
-    ImGui::TextWrapped("%s", drawable(text).c_str());
+    textWrapped(text);
   }
 
  private:
@@ -73,7 +74,7 @@ void drawTerms(const emfield::PathBudget& budget, render::Theme theme, float s) 
         (term.unit.empty() || std::isinf(term.value) ? "" : " " + render::unitText(term.unit));
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextWrapped("%s%s", is_sum ? "= " : "", drawable(term.label).c_str());
+    textWrapped((is_sum ? "= " : "") + term.label);
     if (!term.note.empty() && ImGui::IsItemHovered())
       ImGui::SetTooltip("%s", drawable(withDegreeSigns(term.note)).c_str());
     ImGui::TableNextColumn();
@@ -100,12 +101,12 @@ void drawObstacles(const emfield::PathBudget& budget, render::Theme theme, float
 void drawPath(PanelContext& context, const emfield::PathBudget& budget) {
   const render::Theme theme = context.session.theme();
   const float s = context.scale;
-  ImGui::TextWrapped("%s", drawable(withDegreeSigns(budget.verdict)).c_str());
+  textWrapped(withDegreeSigns(budget.verdict));
   drawPathPlot(budget, {ImGui::GetContentRegionAvail().x, 150 * s}, theme, context.session.view().units, s);
   drawTerms(budget, theme, s);
   ImGui::TextDisabled("%s:", toString(budget.model));
   ImGui::SameLine();
-  ImGui::TextWrapped("%s", drawable(budget.excess.why).c_str());
+  textWrapped(budget.excess.why);
   drawObstacles(budget, theme, s);
   {
     const Table table("geometry", 96 * s, theme);
@@ -115,7 +116,7 @@ void drawPath(PanelContext& context, const emfield::PathBudget& budget) {
   for (const std::string& warning : budget.warnings) {
     ImGui::TextColored(stateColor(render::ControllerState::busy), "Warning:");
     ImGui::SameLine();
-    ImGui::TextWrapped("%s", drawable(withDegreeSigns(warning)).c_str());
+    textWrapped(withDegreeSigns(warning));
   }
   if (ImGui::SmallButton("copy as command")) {
     context.session.perform({"copy_profile", {{"emitter", budget.emitter}}});
@@ -141,10 +142,10 @@ void drawEmitters(PanelContext& context, const ProbeResult& result) {
           {high.x - text.x - 8 * context.scale, (low.y + high.y - text.y) / 2},
           ImGui::ColorConvertFloat4ToU32(accentColor(context.session.theme())), value.c_str());
     } else if (!is_open) {
-      ImGui::TextWrapped("%s", drawable(value).c_str());
+      textWrapped(value);
     }
     if (is_open && emitter.budget) drawPath(context, *emitter.budget);
-    if (is_open && !emitter.budget) ImGui::TextWrapped("%s", drawable(emitter.refusal).c_str());
+    if (is_open && !emitter.budget) textWrapped(emitter.refusal);
     ImGui::PopID();
   }
   if (shown < result.contributions.size()) {
@@ -172,12 +173,12 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
     const std::string unit = info.unit.empty() ? "" : " " + info.unit;
     return valueText(exact, info.unit, fmt::format("{:.4g}{}", exact, unit), view) + " at the point itself";
   }();
-  ImGui::TextWrapped("%s", drawable(at_point).c_str());
+  textWrapped(at_point);
   ImGui::PopStyleColor();
   ImGui::SetWindowFontScale(1);
   if (point != PointField::same) {
     ImGui::PushStyleColor(ImGuiCol_Text, stateColor(render::ControllerState::busy));
-    ImGui::TextWrapped("%s", drawable(value + " in the picture, between voxel centres").c_str());
+    textWrapped(value + " in the picture, between voxel centres");
     ImGui::PopStyleColor();
   }
   ImGui::TextDisabled("%s", drawable(render::quantityTitle(result.quantity, info.unit)).c_str());
@@ -186,10 +187,9 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
   if (reading.emitters.empty()) return;
   ImGui::Spacing();
   ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(theme));
-  ImGui::TextWrapped(
-      point == PointField::same
-          ? "at the point itself (the value above is that of the volume, between voxel centres)"
-          : "at the point itself");
+  textWrapped(point == PointField::same
+                  ? "at the point itself (the value above is that of the volume, between voxel centres)"
+                  : "at the point itself");
   ImGui::PopStyleColor();
   drawEmitters(context, result);
 }
@@ -204,13 +204,16 @@ void drawProbePanel(PanelContext& context) {
   if (ImGui::SmallButton(prober.isLocked() ? "unlock (P)" : "lock (P)"))
     perform(context, R"({"do":"lock_probe"})");
   ImGui::SameLine();
-  ImGui::TextDisabled(prober.isLocked() ? "follows time and edits" : "under the cursor");
+  const bool follows = !session.status().failed;
+  ImGui::TextDisabled("%s", !follows            ? "of the field before"
+                            : prober.isLocked() ? "follows time and edits"
+                                                : "under the cursor");
   const ProbeResult* result = prober.result();
   if (result == nullptr) {
-    ImGui::TextWrapped("Move the cursor over the picture; Ctrl + click locks the probe at a point.");
+    textWrapped("Move the cursor over the picture; Ctrl + click locks the probe at a point.");
   } else if (!result->error.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, errorColor(session.theme()));
-    ImGui::TextWrapped("%s", result->error.c_str());
+    textWrapped(result->error);
     ImGui::PopStyleColor();
   } else if (!result->reading) {
     ImGui::TextDisabled("outside the volume");

@@ -48,7 +48,7 @@ void drawRestoreQuestion(PanelContext& context) {
     ImGui::TextUnformatted("The file was written since: edits that do not apply any more are left out.");
   }
   ImGui::Spacing();
-  const int answer = drawAnswers(context, kept.written_utc, {"Restore", "Discard", "Later (Esc)"}, 0);
+  const int answer = drawAnswers(kept.written_utc, {"Restore", "Discard", "Later (Esc)"}, 0);
   ImGui::TextDisabled("Later: it is kept until it is restored or discarded (menu File).");
   if (kept.others > 0) {
     ImGui::TextDisabled("%s",
@@ -111,9 +111,9 @@ void drawRecordingQuestion(PanelContext& context, bool is_running) {
           : "A recording is being opened:");
   ImGui::TextDisabled("%s", drawable(progress.output).c_str());
   ImGui::Spacing();
-  const int answer = is_running ? drawAnswers(context, "recording",
-                                              {"Wait, then quit", "Cancel it and quit", "Back (Esc)"}, 0)
-                                : drawAnswers(context, "recorded", {"Quit", "Back (Esc)"}, 0);
+  const int answer =
+      is_running ? drawAnswers("recording", {"Wait, then quit", "Cancel it and quit", "Back (Esc)"}, 0)
+                 : drawAnswers("recorded", {"Quit", "Back (Esc)"}, 0);
   const bool goes_back = answer == (is_running ? 2 : 1);
   if (goes_back) {
     session.panels.unsaved = false;
@@ -142,9 +142,9 @@ void drawLossQuestion(PanelContext& context) {
     tellFile(session.usualColorsFile());
   }
   ImGui::Spacing();
-  const int answer = drawAnswers(
-      context, "loss", {replaces ? "Replace and quit" : "Save and quit", "Discard and quit", "Back (Esc)"},
-      replaces ? 2 : 0);
+  const int answer =
+      drawAnswers("loss", {replaces ? "Replace and quit" : "Save and quit", "Discard and quit", "Back (Esc)"},
+                  replaces ? 2 : 0);
   if (answer == 2) {
     session.panels.unsaved = false;
   } else if (answer >= 0) {
@@ -178,7 +178,7 @@ void drawReplaceQuestion(PanelContext& context) {
                              : "This file exists already:");
   ImGui::TextDisabled("%s", drawable(file).c_str());
   ImGui::Spacing();
-  const int answer = drawAnswers(context, file, {"Replace", "Back (Esc)"}, 1);
+  const int answer = drawAnswers(file, {"Replace", "Back (Esc)"}, 1);
   endDialog();
   if (answer == 0) perform(context, R"({"do":"replace"})");
   if (answer == 1) session.panels.replace = false;

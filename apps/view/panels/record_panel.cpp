@@ -11,6 +11,7 @@
 #include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/glyphs.h"
 #include "apps/view/widgets/theme.h"
+#include "apps/view/widgets/wrapped_text.h"
 #include "base/text/shell_word.h"
 #include "base/text/time_text.h"
 #include "emscape/base/error.h"
@@ -101,10 +102,12 @@ void drawOutput(PanelContext& context, Typed& typed) {
   }
   ImGui::SetNextItemWidth(360 * context.scale);
   ImGui::InputText("##file", typed.file, sizeof typed.file, ImGuiInputTextFlags_AutoSelectAll);
+  tabStop();
   ImGui::SameLine();
   if (ImGui::Button("Browse")) {
     session.browse(FileBrowser::Purpose::record, std::filesystem::path(typed.file).filename().string());
   }
+  tabStop();
   ImGui::TextDisabled("NAME.mp4, or a folder for pictures");
 }
 
@@ -116,7 +119,8 @@ void drawSize(const PanelContext& context, Typed& typed) {
     return fmt::format("{}, {} x {}", kSizes[preset].name, size.width, size.height);
   };
   ImGui::SetNextItemWidth(260 * context.scale);
-  if (!ImGui::BeginCombo("size", nameOf(typed.preset).c_str())) return;
+  const bool is_unfolded = ImGui::BeginCombo("size", nameOf(typed.preset).c_str());
+  if (!is_unfolded) return tabStop();
   for (std::size_t preset = 0; preset < std::size(kSizes); ++preset) {
     if (ImGui::Selectable(nameOf(preset).c_str(), preset == typed.preset)) typed.preset = preset;
   }
@@ -141,6 +145,8 @@ void drawCameraPath(PanelContext& context) {
     if (ImGui::Selectable(along.c_str(), flies))
       perform(context, R"({"do":"camera_path","path":"bookmarks"})");
     ImGui::EndCombo();
+  } else {
+    tabStop();
   }
   if (flies && count < 2)
     ImGui::TextColored(errorColor(session.theme()), "two bookmarks are needed: Ctrl+1, Ctrl+2, ...");
@@ -151,6 +157,7 @@ void drawTimes(const PanelContext& context, Typed& typed) {
   const auto number = [&](const char* name, double& value, const NumberForm& form) {
     ImGui::SetNextItemWidth(120 * context.scale);
     numberField(context, name, value, form);
+    tabStop();
   };
   NumberForm instant{"", "s"}, step{"", "s"}, rate;
   instant.read = [&](const std::string& text) { return context.session.timeline().parseTime_s(text); };
@@ -224,12 +231,11 @@ void drawRecording(PanelContext& context, const Area& picture) {
   drawTimes(context, typed);
   drawEstimate(context, typed);
   ImGui::TextDisabled("%s", "the same on the command line, with the view saved as VIEW.json (Ctrl+Shift+V):");
-  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 520 * context.scale);
-  ImGui::TextDisabled("%s", drawable(commandLine(session, typed)).c_str());
-  ImGui::PopTextWrapPos();
+  ImGui::TextDisabled("%s", wrapped(commandLine(session, typed), 520 * context.scale).c_str());
   ImGui::Spacing();
   if (defaultButton("Record")) session.perform(typed.command());
   if (ImGui::Button("Back (Esc)")) session.panels.record = false;
+  tabStop();
   endDialog();
 }
 

@@ -13,7 +13,9 @@
 #include "apps/view/values/search_text.h"
 #include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
+#include "apps/view/widgets/wrapped_text.h"
 #include "emscape/base/error.h"
+#include "emscape/scenario/file/scenario_file.h"
 
 namespace emscape::view {
 namespace {
@@ -44,6 +46,7 @@ struct PanelState {
   std::vector<SectionGroup> section_groups;
   std::map<std::string, ParameterGroup> groups;
   std::set<std::string> edited;
+  std::string changes;  // "3 values changed"
   std::size_t disabled_count = 0;
   std::unordered_set<std::string> open;  // paths of sections
   std::string selected;                  // path of the section that is marked
@@ -52,6 +55,7 @@ struct PanelState {
   bool is_new = true;
   std::array<char, 256> searched{};
   RowState rows;
+  std::vector<std::string> edit_texts;  // made when they are asked for
 
   void take(const playback::ScenarioPtr& next) {
     if (next == scenario) return;
@@ -69,6 +73,8 @@ struct PanelState {
     scenario = next;
     groups.clear();
     edited = playback::editedPaths(next->edits());
+    changes = changeCountOf(*next);
+    edit_texts.clear();
     SectionGroup emitters{"Emitters", {"radar", "transmitter", "jammer"}};
     disabled_count = 0;
     for (const scenario::Emitter& emitter : next->emitters) {
@@ -98,7 +104,10 @@ struct PanelState {
     std::unordered_set<std::string> still_open;
     for (const SectionGroup& group : section_groups) {
       for (const Section& section : group.sections) {
-        if (is_edited_further && before.count(section.path) == 0) show(section.path);
+        if (is_edited_further && before.count(section.path) == 0) {
+          open.insert(section.path);
+          if (shown.empty()) shown = section.path;  // an emitter rather than the platform that came with it
+        }
         if (open.count(section.path) > 0) still_open.insert(section.path);
       }
     }
@@ -126,16 +135,16 @@ struct PanelState {
     if (arrives) open.insert(path);
   }
 
-  /// Opens a section and scrolls to it.
-  void show(const std::string& path) {
-    open.insert(path);
-    shown = path;
-  }
-
   const ParameterGroup& groupAt(const std::string& path) {
     const auto known = groups.find(path);
     if (known != groups.end()) return known->second;
     return groups.emplace(path, scenario::parametersOf(*scenario, path)).first->second;
+  }
+
+  /// The edits in words.
+  const std::vector<std::string>& editTexts(const Session& session) {
+    if (edit_texts.empty()) edit_texts = view::editTexts(*session.original(), scenario->edits());
+    return edit_texts;
   }
 
   /// True if a value of a section differs from the file.
@@ -152,7 +161,7 @@ void drawBody(PanelContext& context, PanelState& state, const Section& section) 
   try {
     rows.draw(state.groupAt(section.path));
   } catch (const Error& error) {
-    ImGui::TextWrapped("%s", drawable(error.message()).c_str());
+    textWrapped(error.message());
   }
   ImGui::PopID();
 }
@@ -330,25 +339,37 @@ bool drawSections(PanelContext& context, PanelState& state, const SectionGroup& 
   return true;
 }
 
-/// The edits, each with a button that takes it back.
-void drawEdits(PanelContext& context, const PanelState& state) {
+/// The edits, each with a button that takes it back. Only visible ones are drawn.
+void drawEdits(PanelContext& context, PanelState& state) {
   if (!ImGui::BeginPopup("edits")) return;
   constexpr std::size_t kMaxCharacters = 60;
+  constexpr int kMaxLines = 20;
   const std::vector<scenario::Edit> edits = state.scenario->edits();
-  const std::vector<std::string> texts = editTexts(*context.session.original(), edits);
+  const std::vector<std::string>& texts = state.editTexts(context.session);
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const auto count = static_cast<int>(edits.size());
+  const float width =
+      ImGui::CalcTextSize("undo this").x + static_cast<float>(kMaxCharacters) * 0.6F * ImGui::GetFontSize();
+  if (count > kMaxLines) ImGui::BeginChild("list", {width, line * kMaxLines});
   std::string reverted;
-  for (std::size_t i = 0; i < edits.size(); ++i) {
-    pushNameId(edits[i].path);
-    if (ImGui::SmallButton("undo this")) reverted = edits[i].path;
-    ImGui::SameLine();
-    const std::string& text = texts[i];
-    const bool is_long = text.size() > kMaxCharacters;
-    std::size_t end = kMaxCharacters;
-    while (is_long && (text[end] & 0xC0) == 0x80) --end;  // not within a character
-    ImGui::TextUnformatted(drawable(is_long ? text.substr(0, end) + " …" : text).c_str());
-    tooltipOfLongName(text, is_long);
-    ImGui::PopID();
+  ImGuiListClipper clipper;
+  clipper.Begin(count, line);
+  while (clipper.Step()) {
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      const std::string &path = edits[static_cast<std::size_t>(i)].path,
+                        &text = texts[static_cast<std::size_t>(i)];
+      pushNameId(path);
+      if (ImGui::SmallButton("undo this")) reverted = path;
+      ImGui::SameLine();
+      const bool is_long = text.size() > kMaxCharacters;
+      std::size_t end = kMaxCharacters;
+      while (is_long && (text[end] & 0xC0) == 0x80) --end;  // not within a character
+      ImGui::TextUnformatted(drawable(is_long ? text.substr(0, end) + " …" : text).c_str());
+      tooltipOfLongName(text, is_long);
+      ImGui::PopID();
+    }
   }
+  if (count > kMaxLines) ImGui::EndChild();
   ImGui::Separator();
   if (ImGui::SmallButton("undo all")) {
     ImGui::CloseCurrentPopup();
@@ -359,7 +380,7 @@ void drawEdits(PanelContext& context, const PanelState& state) {
 }
 
 /// Undo and redo, and a line on the changes that is always there: the rows below stay where they are.
-void drawHead(PanelContext& context, const PanelState& state) {
+void drawHead(PanelContext& context, PanelState& state) {
   const Session& session = context.session;
   const auto button = [&](const char* name, const char* command, bool enabled, const char* tip,
                           float spacing) {
@@ -376,20 +397,14 @@ void drawHead(PanelContext& context, const PanelState& state) {
     ImGui::SameLine(0, 2 * spacing);
     ImGui::TextDisabled("%zu emitter%s off", state.disabled_count, state.disabled_count == 1 ? "" : "s");
   }
-  const std::size_t count = state.scenario->edits().size();
-  const std::string changes =
-      count == 0 ? "nothing changed" : fmt::format("{} value{} changed …", count, count == 1 ? "" : "s");
-  ImGui::BeginDisabled(count == 0);
+  const bool has_changes = !state.changes.empty();
+  ImGui::BeginDisabled(!has_changes);
+  const std::string changes = has_changes ? state.changes + " …" : "nothing changed";
   if (ImGui::SmallButton((changes + "###edits").c_str())) ImGui::OpenPopup("edits");
   ImGui::EndDisabled();
-  if (count > 0 && ImGui::IsItemHovered()) ImGui::SetTooltip("the changes; undo one or all");
+  if (has_changes && ImGui::IsItemHovered()) ImGui::SetTooltip("the changes; undo one or all");
   drawEdits(context, state);
   button("copy as command", R"({"do":"copy_command"})", true, "Ctrl+Shift+C", spacing);
-}
-
-bool isDialogOpen(const Panels& panels) {
-  return panels.record || panels.restore || panels.unsaved || panels.replace || panels.open || panels.time ||
-         panels.position || panels.warnings;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "apps/view/panels/panels.h"
 #include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
+#include "apps/view/widgets/wrapped_text.h"
 #include "recording/read_recording.h"
 
 namespace emscape::view {
@@ -16,9 +17,8 @@ void drawRecentFiles(PanelContext& context, std::size_t max_count) {
   for (std::size_t i = 0; i < std::min(max_count, recent.size()); ++i) {
     const std::filesystem::path file(recent[i]);
     ImGui::PushID(static_cast<int>(i));
-    if (selectableName(file.filename().string(), false)) {
+    if (selectableName(file.filename().string(), false, 0, /*has_tab_stop=*/true))
       session.perform({"open_recent", {{"number", i + 1}}});
-    }
     ImGui::SameLine(0, 12 * context.scale);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float room = std::max(1.0F, ImGui::GetContentRegionAvail().x);
@@ -53,7 +53,7 @@ void drawExamples(PanelContext& context) {
       ImGui::PopID();
       ImGui::TableNextColumn();
       ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(session.theme()));
-      ImGui::TextWrapped("%s", drawable(example.text).c_str());
+      textWrapped(example.text);
       ImGui::PopStyleColor();
     }
     ImGui::EndTable();
@@ -76,14 +76,13 @@ void drawStart(PanelContext& context, const Area& picture) {
   ImGui::Begin("start", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoBringToFrontOnFocus);
-  ImGui::PushTextWrapPos(width - 12 * s);
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
   static const std::string text =
       "Open a scenario (.yaml, .json), whose field is computed, or volumes of any program: a file "
       "(.vdb .nvdb .vti .raw .dat), a series (.pvd) or a folder; or a recording of a battlefield (" +
       interop::recordingEndingsText() + ").";
-  ImGui::TextUnformatted(text.c_str());
-  ImGui::PopTextWrapPos();
+  textWrapped(text);
   if (ImGui::Button("Open (Ctrl+O)")) perform(context, R"({"do":"open"})");
   ImGui::SameLine(0, 16 * s);
   ImGui::AlignTextToFramePadding();

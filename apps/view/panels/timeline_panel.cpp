@@ -8,6 +8,7 @@
 #include "apps/view/widgets/glyphs.h"
 #include "base/text/time_text.h"
 #include "emscape/scenario/model/clock.h"
+#include "emscape/scenario/model/edit.h"
 
 namespace emscape::view {
 namespace {
@@ -27,8 +28,7 @@ float axisHeight(float scale, int rows) {
 
 /// Rows of emitters that fit; -1: not even the axis does.
 int rowsOf(const Session& session, float scale, float room) {
-  const std::size_t emitters = session.timeline().bars().empty() ? 0 : 1;
-  int rows = std::min(kMaxTimelineRows, static_cast<int>(std::max(session.openedEmitters(), emitters)));
+  int rows = std::min(kMaxTimelineRows, static_cast<int>(session.mostEmitters()));
   while (rows >= 0 && transportHeight(scale) + axisHeight(scale, rows) > room) --rows;
   return rows;
 }
@@ -75,15 +75,19 @@ double pointedTime_s(const PanelContext& context, const TimeAxis& axis, double s
   return std::clamp(std::round(axis.time_s(x) * per_s) / per_s, timeline.begin_s(), timeline.end_s());
 }
 
+void showTooltip(const PanelContext& context, const std::string& text) {
+  // The child window of the rows has no padding of its own.
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10 * context.scale, 7 * context.scale));
+  ImGui::SetTooltip("%s", drawable(text).c_str());
+  ImGui::PopStyleVar();
+}
+
 void showTime(const PanelContext& context, double time_s) {
   const Session& session = context.session;
   std::string text = timeText(time_s, session.timeline().end_s());
   if (const auto scenario = session.scenario(); scenario && !scenario->clock.epoch_utc.empty())
     text += "\n" + scenario::utcAt(scenario->clock, time_s);
-  // The child window of the rows has none of its own.
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10 * context.scale, 7 * context.scale));
-  ImGui::SetTooltip("%s", drawable(text).c_str());
-  ImGui::PopStyleVar();
+  showTooltip(context, text);
 }
 
 /// Handles the mouse over the item drawn last.
@@ -138,6 +142,39 @@ float namesWidth(const Session& session, float scale) {
   return bars.empty() ? 0 : std::min(widest + 10 * scale, 150 * scale);
 }
 
+/// The names before the rows: the wheel scrolls, a click selects the emitter.
+/// @param width, height  of all names
+void handleNames(PanelContext& context, float width, float height) {
+  if (width <= 0) return;
+  ImGui::SetCursorPos({0, 0});
+  ImGui::InvisibleButton("names", {width, height});
+  if (!ImGui::IsItemHovered()) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  const float row = kTimelineRow * context.scale;
+  if (io.MouseWheel != 0) ImGui::SetScrollY(ImGui::GetScrollY() - 3 * row * io.MouseWheel);
+  const std::vector<playback::ActivityBar>& bars = context.session.timeline().bars();
+  const auto i = static_cast<std::size_t>(std::max(0.0F, (io.MousePos.y - ImGui::GetItemRectMin().y) / row));
+  if (i >= bars.size()) return;
+  showTooltip(context, bars[i].emitter);
+  if (ImGui::IsItemClicked())
+    context.session.perform({"select", {{"path", "emitters." + scenario::pathStep(bars[i].emitter)}}});
+}
+
+/// Scrolls to the row of an emitter when it is selected. @param height  of the rows in sight
+void followSelection(const Session& session, float height, float scale) {
+  static std::string followed;
+  if (session.selected() == followed) return;
+  followed = session.selected();
+  const std::vector<playback::ActivityBar>& bars = session.timeline().bars();
+  const auto found = std::find_if(bars.begin(), bars.end(), [](const playback::ActivityBar& bar) {
+    return followed == "emitters." + scenario::pathStep(bar.emitter);
+  });
+  const float row = kTimelineRow * scale, top = row * static_cast<float>(found - bars.begin());
+  const float seen = ImGui::GetScrollY();
+  if (found != bars.end() && (top < seen || top + row > seen + height))
+    ImGui::SetScrollY(top - (height - row) / 2);
+}
+
 void drawTracks(PanelContext& context, int rows) {
   constexpr ImGuiButtonFlags kButtons = ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle;
   Session& session = context.session;
@@ -163,11 +200,13 @@ void drawTracks(PanelContext& context, int rows) {
     ImGui::SetCursorScreenPos({at.x, rows_top});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     ImGui::BeginChild("rows", {0, rows_bottom - rows_top}, false, ImGuiWindowFlags_NoScrollWithMouse);
+    followSelection(session, rows_bottom - rows_top, s);
     drawRows(*ImGui::GetWindowDrawList(), axis, session, at.x, s);
     const float all = kTimelineRow * s * static_cast<float>(session.timeline().bars().size());
     ImGui::SetCursorPosX(names);
     ImGui::InvisibleButton("axis", {axis.width, all}, kButtons);
     handleMouse(context, axis, false);
+    handleNames(context, names, all);
     drawShade(*ImGui::GetWindowDrawList(), axis, session, rows_top, rows_bottom);
     drawHands(*ImGui::GetWindowDrawList(), axis, session, rows_top, rows_bottom, s);
     ImGui::EndChild();

@@ -5,6 +5,7 @@
 #include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/glyphs.h"
 #include "apps/view/widgets/theme.h"
+#include "apps/view/widgets/wrapped_text.h"
 
 namespace emscape::view {
 
@@ -32,7 +33,7 @@ void drawWarnings(PanelContext& context) {
   if (session.warnings().empty()) ImGui::TextDisabled("There are none.");
   for (const std::string& warning : session.warnings()) {
     ImGui::Bullet();
-    ImGui::TextWrapped("%s", drawable(warning).c_str());
+    textWrapped(warning);
   }
   ImGui::EndChild();
   if (defaultButton("Close")) session.panels.warnings = false;

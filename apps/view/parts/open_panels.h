@@ -19,12 +19,25 @@ struct Panels {
   bool changed = false;   ///< files of the input have changed on the disk
   bool hidden = false;    ///< all of them, temporarily
 };
+/// What a panel takes from the rest of the window.
+enum class PanelKind {
+  docked,    ///< its room; stored in a view, while the others are temporary
+  beside,    ///< nothing
+  dialog,    ///< the keys without Ctrl
+  question,  ///< all keys: the window waits for it
+};
 /// The panels, except `hidden`, by the names used in scripts and view files.
 struct PanelName {
   const char* name;
   bool Panels::*open;
-  bool stays;  ///< true: stored in a view; the others are temporary
+  PanelKind kind;
+
+  bool stays() const { return kind == PanelKind::docked; }
 };
 const std::vector<PanelName>& panelNames();
+/// True if a panel of a kind is open.
+bool isOpen(const Panels& panels, PanelKind kind);
+/// True if a dialog or a question has the keys.
+bool isDialogOpen(const Panels& panels);
 
 }  // namespace emscape::view

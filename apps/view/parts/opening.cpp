@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/view/files/recordings.h"
 #include "apps/view/values/refusal_text.h"
 #include "emscape/base/error.h"
@@ -72,10 +74,11 @@ Opening prepareOpening(const OpenRequest& asked, const ViewOptions& present) {
   OpenRequest request = asked;
   Opening opening;
   std::string made_of;
+  ImportNote note;
   if (playback::inputKindOf(request.file) ==
       playback::InputKind::recording) {  // throws if there is no such file
     made_of = request.file;
-    request.file = importRecordingFile(request.file, opening.note);
+    request.file = importRecordingFile(request.file, note);
   }
   opening.options = present;
   ViewOptions& options = opening.options;
@@ -113,15 +116,23 @@ Opening prepareOpening(const OpenRequest& asked, const ViewOptions& present) {
       options.offers_kept_view = !request.view;
       break;
   }
-  if (options.view.input != present.view.input) {
+  if (!made_of.empty() || options.view.input != present.view.input) {
     options.stream.reset();
     options.made_of = made_of;
-    options.made_note = opening.note;
+    options.made_note = note;
+    opening.imports = !made_of.empty();
   }
   options.view.transfer_file.clear();
   options.unsaved_edits = request.unsaved_edits;
+  opening.restores = request.restores;
   playback::addOwnScenario(options.view);
   checkInput(options, opening);
+  for (const std::string& file : playback::missingMapFiles(options.view)) {
+    std::vector<std::string>& places = options.view.places;
+    places.erase(std::remove(places.begin(), places.end(), file), places.end());
+    if (options.view.drape == file) options.view.drape.clear();
+    opening.left_out.push_back(fmt::format("{} is left out of the map: no such file", file));
+  }
   if (!opening.left_out.empty()) options.state.clear();
   return opening;
 }

@@ -13,8 +13,9 @@ namespace emscape::view {
 struct Opening {
   ViewOptions options;                ///< of the new session
   std::string colors;                 ///< a transfer function for the present session; else empty
-  std::vector<std::string> left_out;  ///< edits that no longer apply, each with the reason
-  std::string note;                   ///< of the import of a recording; may be empty
+  bool restores = false;              ///< as of the request
+  bool imports = false;               ///< a recording: what was assumed is told
+  std::vector<std::string> left_out;  ///< edits that no longer apply and files that are gone, with the reason
 };
 
 /// Examines the file: kind by name and content, errors in a scenario, edits that still apply. Reads files: to

@@ -110,6 +110,9 @@ ProgramState programState(const ProgramFacts& facts, const playback::LiveStatus&
   if (state.fraction >= 0) state.badge += fmt::format(" {:.0f} %", std::floor(100 * state.fraction));
   if (facts.has_picture && !facts.has_field) {
     state.picture = "without the field";
+  } else if (facts.has_picture && status.failed && state.activity == Activity::idle) {
+    state.what = "NOT COMPUTED: " + status.error;
+    state.picture = "the picture shows the field before";
   } else if (facts.has_picture && state.activity != Activity::playing) {
     state.picture = pictureText(status, state.activity == Activity::computing && status.computing);
   }

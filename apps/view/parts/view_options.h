@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/view/files/recordings.h"
 #include "emscape/playback/view/view_state.h"
 #include "playback/stream/live_battlefield.h"
 #include "render/patterns/frame_controller.h"
@@ -30,7 +31,7 @@ struct ViewOptions {
   std::optional<playback::StreamRequest> stream_request;  ///< of the command line
   /// The user's file of which the program has made the input: the base of a stream, a recording; else empty.
   std::string made_of;
-  std::string made_note;  ///< what the program assumed for it; may be empty
+  ImportNote made_note;
   /// The file whose name and folder those of outputs follow.
   const std::string& namesake() const { return made_of.empty() ? view.input : made_of; }
   std::string script, log;

@@ -43,6 +43,12 @@ playback::ViewState firstView(const ViewOptions& options, const WindowControl& w
   return view;
 }
 
+/// The time (s) for which a notice is shown.
+double timeOf(const Notice& notice) {
+  constexpr double kCharactersRead_s = 15;
+  return std::max(notice.is_error ? 12.0 : 4.0, static_cast<double>(notice.text.size()) / kCharactersRead_s);
+}
+
 }  // namespace
 
 Session::Session(const ViewOptions& options, const playback::ComputeTarget& target, WindowControl& window,
@@ -122,6 +128,11 @@ void Session::askTime() {
   live_.show(view_, nullptr, timeline_.playing() ? playback::Patience::kEndless : playback::Patience::kShort);
 }
 
+void Session::setTimelineScenario() {
+  timeline_.setScenario(*edits_->scenario());
+  most_emitters_ = std::max(most_emitters_, timeline_.bars().size());
+}
+
 void Session::takeScenario() {
   std::vector<double> times_s = live_.times_s();
   if (times_s.empty() || times_s == timeline_.times_s()) return;
@@ -142,8 +153,7 @@ void Session::takeScenario() {
       panels.colors = true;  // there is nothing to change but the colours
     }
   }
-  if (edits_) timeline_.setScenario(*edits_->scenario());
-  if (is_first) opened_emitters_ = timeline_.bars().size();
+  if (edits_) setTimelineScenario();
 }
 
 void Session::takePicture() {
@@ -156,6 +166,7 @@ void Session::takePicture() {
   if (!hasField()) return;
   if (takes_colors_) takeColors();
   if (is_first) log_.write("first_picture", {{"device", picture_->status.device}});
+  if (is_first && is_on_screen_) tellImport();
   if (is_first && !options_.state.empty()) noteSavedView(options_.state);
 }
 
@@ -166,6 +177,23 @@ void Session::finishJobs() {
     tell(failureText(error), true);
   }
   noteSteps();
+}
+
+/// Tells a failure of a field or picture. Its message goes as soon as a field that the user requested after
+/// it succeeds. The field to which the session returns from a refused quantity or comparison does not count,
+/// but another quantity or comparison; nor do the fields of a playing series, which would end it unread.
+void Session::reportFailure() {
+  const bool has_succeeded = failure_.is_field && status_.error.empty() && !status_.computing;
+  const bool is_requested = failure_.shown.empty() || fieldName(chosenQuantity()) != failure_.shown;
+  if (has_succeeded && is_requested && !timeline_.playing()) {
+    if (notice_.text == failure_.told) notice_ = {};
+    failure_ = {};
+  }
+  if (status_.error == failure_.text) return;
+  failure_.text = status_.error;
+  if (status_.error.empty()) return;
+  failure_ = {status_.error, status_.error, "", status_.is_field_error};
+  tell(status_.error, true);
 }
 
 bool Session::update() {
@@ -192,10 +220,7 @@ bool Session::update() {
     log_.write("state", {{"from", render::toString(logged_state_)}, {"to", render::toString(change.to)}});
     logged_state_ = change.to;
   }
-  if (status_.error != reported_error_) {
-    reported_error_ = status_.error;
-    if (!reported_error_.empty()) tell(reported_error_, true);
-  }
+  reportFailure();
   revertRejected();
   if (const auto recorded = files_->recorder.takeOutcome()) {
     if (!recorded->is_error) noteWritten(files_->recorder.progress().output);
@@ -212,7 +237,7 @@ bool Session::update() {
   if (takeWarnings(now_s)) touched_ = true;
   writePendingPicture();
   keepEdits(now_s);
-  const bool notice_ends = !notice_.text.empty() && now_s - notice_.since_s > (notice_.is_error ? 12 : 4);
+  const bool notice_ends = !notice_.text.empty() && now_s - notice_.since_s > timeOf(notice_);
   if (notice_ends) notice_ = {};
   prober_.turnOn(panels.probe && !panels.hidden);
   cursor_.turnOn(!panels.hidden);

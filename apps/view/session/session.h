@@ -168,9 +168,11 @@ class Session {
   void takeOver(const Session& before);
   /// Ends this session. @param keeps_edits  true: unsaved edits are offered when the input is opened again
   void leave(bool keeps_edits);
+  /// Ends this session for that of the view that was kept, whose file the next edits replace.
+  void leaveForKept();
   /// Called when the session is shown. @param left_out  edits that did not apply: warnings
   void shown(const std::vector<std::string>& left_out);
-  void record(const RecordRange& range, const std::string& output);
+  void record(const RecordRange& range, const std::string& output, Replaces replaces);
   /// Opens the file browser. @param proposed  file name at first; may be empty
   void browse(FileBrowser::Purpose purpose, const std::string& proposed = "");
 
@@ -180,8 +182,9 @@ class Session {
   /// The camera stays where it is, to be moved freely.
   void stopFollowing();
   const playback::Timeline& timeline() const { return timeline_; }
-  /// Number of emitters when the input was opened; the time line keeps the height of their rows.
-  std::size_t openedEmitters() const { return opened_emitters_; }
+  /// The largest number of emitters since the input was opened: the time line has a row for each, and does
+  /// not shrink by an undo.
+  std::size_t mostEmitters() const { return most_emitters_; }
   const render::RenderSettings& settings() const { return view_.settings; }
   /// A plane through the middle of the box; a vertical one faces the viewer.
   render::CutPlane newPlane(render::CutPlane::Kind kind) const;
@@ -207,6 +210,10 @@ class Session {
   playback::ScenarioPtr scenario() const { return edits_ ? edits_->scenario() : nullptr; }
   /// The same as it is in its file.
   playback::ScenarioPtr original() const;
+  /// @throws Error (bad_input) if the stream moves the platform: an edit of its place would have no effect
+  void requireMovable(const std::string& platform) const;
+  /// "live", of the stream; empty without one.
+  std::string streamTitle() const;
   /// The last edits if they were refused.
   const std::optional<Rejection>& rejection() const { return rejection_; }
   /// The path of what is selected, such as "emitters.jammer"; empty: nothing.
@@ -234,6 +241,8 @@ class Session {
   void tell(const std::string& text, bool is_error = false);
   /// Tells that the program wrote this file, and remembers it.
   void tellWritten(const std::string& file);
+  /// Tells what was assumed for the scenario of a recording.
+  void tellImport();
   /// Shows a notice that another session of the window has told and logged.
   void show(const Notice& notice) { notice_ = notice; }
   Panels panels;
@@ -268,8 +277,10 @@ class Session {
   void showPlanes();
   void changeSetting(const Command& command);
   void showQuantity(const std::string& name);
+  void reportFailure();
   void revertRejected();
-  void showLastQuantity();
+  /// @return false if they are shown already
+  bool showLastQuantity();
   /// Abandons what is being computed or opened.
   void cancel();
   void noteProgram();
@@ -289,10 +300,16 @@ class Session {
   /// True if the user is asked first, since the file exists and is not as this session wrote it. With the
   /// argument `replace`, which is the answer, and in scripts there is no question.
   bool asksToReplace(const Command& command, const std::string& file);
+  /// Whether the question was answered with yes; scripts do so unless they say no.
+  bool mayReplace(const Command& command) const;
   void saveView(const std::string& file);
   void copyCommand();
   void writePendingPicture();
   void lookForKeptView();
+  /// True if the program has made the input of a recording.
+  bool isImported() const { return !options_.made_of.empty() && !options_.stream; }
+  /// The user's files that the input is read from or made of.
+  std::vector<std::string> sources() const;
   void watchFiles();
   void takeChangedFiles();
   void keepEdits(double now_s);
@@ -301,6 +318,7 @@ class Session {
   bool isPictureSettled() const;
   /// @return true if they have changed
   bool takeWarnings(double now_s);
+  std::string importText() const;
   void checkScenario();
   void checkSteps();
   void joinModelWarnings(double now_s);
@@ -311,6 +329,10 @@ class Session {
   void adoptStreamed();
   void indexStreamed();
   double untilStream_s() const;
+  playback::PosesPtr streamedPoses() const;
+  /// @throws Error (bad_input) if edits concern the place of a platform that the stream moves
+  void requireMovable(const std::vector<scenario::Edit>& edits) const;
+  void setTimelineScenario();
   void takeScenario();
   void takePicture();
   void showEdits();
@@ -377,7 +399,12 @@ class Session {
 
   std::shared_ptr<const playback::LivePicture> picture_;
   playback::LiveStatus status_;
-  std::string reported_error_;
+  struct {
+    std::string text;       // of the status when it was read last
+    std::string told;       // notice of the last failure
+    std::string shown;      // field to which the session has returned from the refused one; empty: it has not
+    bool is_field = false;  // that failed; else a picture
+  } failure_;
   render::ControllerState logged_state_ = render::ControllerState::idle;
   Activity logged_activity_ = Activity::empty;
   bool is_opened_ = false;
@@ -386,7 +413,7 @@ class Session {
   std::optional<double> computing_from_s_;  // when the pending field was requested
   CameraControl camera_;
   playback::Timeline timeline_;
-  std::size_t opened_emitters_ = 0;
+  std::size_t most_emitters_ = 0;
   double advanced_at_s_ = 0;
   render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // mode to which the key I returns
   double last_map_height_agl_m_ = 100;  // to which the key of the map layer returns
@@ -422,7 +449,7 @@ class Session {
     double told_s = -1e9, arrival_s = 0;
     long long records = 0;
     std::size_t entities = 0;
-    bool has_trouble = false, is_moving = false;
+    bool has_trouble = false, is_moving = false, has_stopped = false;
   } stream_;
   std::optional<Rejection> rejection_;
   std::string selected_;
@@ -458,6 +485,7 @@ class Session {
   std::vector<ShownQuantity> quantities_;
   playback::ScenarioPtr quantities_of_;
   std::vector<std::string> warnings_;
+  std::string import_text_;  // among them
   playback::ScenarioPtr checked_scenario_;
   playback::ScenarioPtr stepped_scenario_;  ///< whose steps are checked
   std::vector<std::string> step_warnings_;

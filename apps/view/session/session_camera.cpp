@@ -9,7 +9,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "playback/editing/pick.h"
-#include "scenario/file/named_items.h"
+#include "scenario/model/named_items.h"
 
 namespace emscape::view {
 namespace {

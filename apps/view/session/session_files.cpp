@@ -7,7 +7,9 @@
 
 #include "apps/view/files/file_endings.h"
 #include "apps/view/files/recent_files.h"
+#include "apps/view/files/recordings.h"
 #include "apps/view/session/session.h"
+#include "base/text/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "scenario/file/save_scenario.h"
@@ -42,11 +44,12 @@ void Session::shown(const std::vector<std::string>& left_out) {
   if (options_.stream) return;  // its file is not the user's
   for (const std::string& edit : left_out) files_->messages->add(edit);
   if (!left_out.empty())
-    tell(fmt::format("{} edit{} left out, as {}: see the warnings", left_out.size(),
-                     left_out.size() == 1 ? " is" : "s are",
-                     left_out.size() == 1 ? "it does not apply any more" : "they do not apply any more"),
+    tell(fmt::format("{} of the view {} left out, as {} any more: see the warnings",
+                     left_out.size() == 1 ? "1 part" : fmt::format("{} parts", left_out.size()),
+                     left_out.size() == 1 ? "is" : "are",
+                     left_out.size() == 1 ? "it does not apply" : "they do not apply"),
          true);
-  jobs_.run([this, input = options_.view.input]() -> BackgroundJobs::Finish {
+  jobs_.run([this, input = options_.namesake()]() -> BackgroundJobs::Finish {
     auto examples = input.empty() ? findExamples() : std::vector<Example>();
     return [this, examples = std::move(examples),
             recent = input.empty() ? readRecentFiles() : addRecentFile(input)] {
@@ -59,15 +62,19 @@ void Session::shown(const std::vector<std::string>& left_out) {
 
 // --- changes on the disk ---
 
+std::vector<std::string> Session::sources() const {
+  return isImported() ? sourcesOfRecording(options_.made_of) : std::vector<std::string>{options_.view.input};
+}
+
+/// Not the files that the program makes of a recording, which it writes again each time that this is opened.
 void Session::watchFiles() {
-  if (options_.stream) return;
-  std::vector<std::string> files;
-  for (const std::string& file : {options_.view.input, options_.view.scenario}) {
-    if (!file.empty()) files.push_back(file);
-  }
-  if (edits_) {
-    const std::vector<std::string> named = scenario::filesOf(*edits_->scenario());
-    files.insert(files.end(), named.begin(), named.end());
+  if (options_.stream || !hasInput()) return;
+  std::vector<std::string> files = sources();
+  if (!options_.view.scenario.empty()) files.push_back(options_.view.scenario);
+  const std::string made = std::filesystem::path(options_.view.input).parent_path().string() + "/";
+  const auto named = edits_ ? scenario::filesOf(*edits_->scenario()) : std::vector<std::string>();
+  for (const std::string& file : named) {
+    if (!isImported() || file.compare(0, made.size(), made) != 0) files.push_back(file);
   }
   file_watch_.watch(files);
 }
@@ -103,33 +110,35 @@ std::string Session::usualScenarioFile() const {
 }
 
 void Session::saveScenario(const std::string& file, bool is_named) {
-  const bool is_imported =
-      !options_.made_of.empty() && !options_.stream;  // its tracks are in a folder of ours
+  const bool is_imported = isImported();  // its tracks are in a folder of ours
   jobs_.run([this, file, is_named, is_imported, saved = scenario()]() -> BackgroundJobs::Finish {
     if (is_imported) {
       scenario::saveWithFiles(*saved, file);
     } else {
       scenario::saveScenario(*saved, file);
     }
-    return [this, file, is_named, saved] {
+    const auto recent = is_named && !options_.stream ? addRecentFile(file) : std::vector<std::string>();
+    return [this, file, is_named, saved, recent] {
       if (is_named) {
         saved_as_ = file;
         files_->browser.forgetFolder();
       }
+      if (!recent.empty()) files_->recent = recent;
       if (scenario() == saved) {
         edits_->markSaved();
         opened_unsaved_ = false;
       }
       keep_at_s_ = log_.now_s();  // the autosave is obsolete
       tellWritten(file);
+      if (status_.failed)
+        tell(fmt::format("written: {}, although its field cannot be computed: {}", file, status_.error),
+             true);
     };
   });
 }
 
 bool Session::isOccupied() const {
-  const Panels& p = panels;
-  return files_->is_typing || p.open || p.record || p.time || p.position || p.restore || p.unsaved ||
-         p.replace;
+  return files_->is_typing || isDialogOpen(panels);
 }
 
 void Session::takeOver(const Session& before) {
@@ -143,8 +152,9 @@ void Session::takeOver(const Session& before) {
 }
 
 void Session::lookForKeptView() {
-  jobs_.run([this, autosaves = files_->autosaves, input = options_.view.input]() -> BackgroundJobs::Finish {
-    std::optional<playback::AutosavedView> found = autosaves->find(input);
+  jobs_.run([this, autosaves = files_->autosaves, input = options_.view.input,
+             written = sources()]() -> BackgroundJobs::Finish {
+    std::optional<playback::AutosavedView> found = autosaves->find(input, written);
     return [this, found = std::move(found)] {
       kept_view_ = found;
       asks_to_restore_ = found && options_.script.empty();
@@ -196,6 +206,22 @@ void Session::leave(bool keeps_edits) {
   }
 }
 
+void Session::leaveForKept() {
+  // At once, not by jobs: the next session's come after it.
+  playback::Autosaves& autosaves = *files_->autosaves;
+  const std::string& input = options_.view.input;
+  try {
+    if (hasUnsavedEdits()) {  // they stay in a file of theirs
+      autosaves.keep(input, viewState());
+    } else if (has_kept_) {
+      autosaves.remove(input);
+    }
+  } catch (const std::exception& error) {
+    files_->messages->add(failureText(error));
+  }
+  autosaves.adopt(input);
+}
+
 std::vector<Verb> Session::fileVerbs() {
   return {
       {"open",
@@ -226,8 +252,9 @@ std::vector<Verb> Session::fileVerbs() {
        "Reads the input again; edits that still apply are kept",
        [](Session& session, const Command&) {
          session.requireInput();
-         session.ask({session.options_.view.input, session.options_.view.scenario, session.viewState(),
-                      session.hasUnsavedEdits()});
+         const ViewOptions& options = session.options_;
+         session.ask({options.stream ? options.view.input : options.namesake(), options.view.scenario,
+                      session.viewState(), session.hasUnsavedEdits()});
        }},
       {"save",
        {{"file", kText, false, {}, {}, requireScenarioEnding}, {"replace", kBoolean, false}},
@@ -266,9 +293,8 @@ std::vector<Verb> Session::fileVerbs() {
        "Shows the view with its edits that was kept when the program did not exit normally",
        [](Session& session, const Command&) {
          if (!session.kept_view_) throw Error(ErrorCode::bad_input, "no edits were kept for this input");
-         session.files_->autosaves->adopt(session.options_.view.input);
-         session.ask(
-             {session.options_.view.input, session.options_.view.scenario, session.kept_view_->state, true});
+         session.ask({session.options_.view.input, session.options_.view.scenario, session.kept_view_->state,
+                      true, true});
        }},
       {"discard",
        {},

@@ -1,12 +1,14 @@
 /// Verbs of the items of a scenario: emitters, platforms, receivers and targets.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <iterator>
 
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
-#include "scenario/file/named_items.h"
 #include "scenario/file/new_items.h"
+#include "scenario/model/named_items.h"
 
 namespace emscape::view {
 namespace {
@@ -43,6 +45,60 @@ scenario::NewItem newItemOf(const Command& command) {
   return item;
 }
 
+/// The paths of the items on a platform.
+std::vector<std::string> pathsOn(const scenario::Scenario& scenario, std::size_t platform) {
+  std::vector<std::string> paths;
+  const auto add = [&](const char* list, const auto& items) {
+    for (const auto& item : items) {
+      if (static_cast<std::size_t>(item.platform) == platform)
+        paths.push_back(std::string(list) + scenario::pathStep(item.name));
+    }
+  };
+  add("emitters.", scenario.emitters);
+  add("receivers.", scenario.placed_receivers);
+  add("targets.", scenario.targets);
+  return paths;
+}
+
+/// The path that an item had before edits renamed it.
+std::string formerPath(const std::vector<scenario::Edit>& edits, std::string path) {
+  for (auto edit = edits.rbegin(); edit != edits.rend(); ++edit) {
+    const std::optional<playback::RenamedItem> renamed = playback::renamedBy(*edit);
+    if (renamed && renamed->path_now == path) path = renamed->path_before;
+  }
+  return path;
+}
+
+/// The path of what is taken back together with a path: a platform that was added takes along what was put on
+/// it, and an item the platform that was added for it.
+/// @param path  with the name that the item had at first, as those that are returned
+std::vector<std::string> pathsRevertedWith(const scenario::Scenario& scenario,
+                                           const std::vector<scenario::Edit>& edits,
+                                           const std::string& path) {
+  const auto additionOf = [&](const std::string& item) {
+    return std::find_if(edits.begin(), edits.end(), [&](const scenario::Edit& edit) {
+      return edit.path == item && edit.value != "null";
+    });
+  };
+  const auto addition = additionOf(path);
+  if (addition == edits.end()) return {};
+  for (std::size_t p = 0; p < scenario.platforms.size(); ++p) {
+    const std::string platform =
+        formerPath(edits, "platforms." + scenario::pathStep(scenario.platforms[p].name));
+    std::vector<std::string> carried = pathsOn(scenario, p);
+    for (std::string& item : carried) item = formerPath(edits, item);
+    if (platform == path) {
+      for (std::string& item : carried) {
+        if (additionOf(item) == edits.end()) item += ".platform";  // it was elsewhere before
+      }
+      return carried;
+    }
+    const bool came_along = addition != edits.begin() && std::prev(addition) == additionOf(platform);
+    if (came_along && carried == std::vector<std::string>{path}) return {platform};
+  }
+  return {};
+}
+
 }  // namespace
 
 const scenario::Scenario& Session::requireScenario() const {
@@ -58,9 +114,15 @@ void Session::enableEmitter(const std::string& name, std::optional<bool> on) {
 }
 
 void Session::revertEdits(const std::string& path) {
-  requireScenario();
-  edit_queue_.replace(path.empty() ? std::vector<scenario::Edit>()
-                                   : playback::editsWithout(edits_->edits(), path));
+  const scenario::Scenario& now = requireScenario();
+  std::vector<scenario::Edit> edits;
+  if (!path.empty()) {
+    const std::vector<scenario::Edit> before = edits_->edits();
+    edits = playback::editsWithout(before, path);
+    for (const std::string& with : pathsRevertedWith(now, before, path))
+      edits = playback::editsWithout(edits, with);
+  }
+  edit_queue_.replace(edits);
 }
 
 std::vector<Verb> Session::itemVerbs() {

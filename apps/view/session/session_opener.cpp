@@ -85,7 +85,11 @@ void SessionOpener::take(Session& session) {
 void SessionOpener::replace(std::unique_ptr<Session>& session) {
   const bool takes_edits_along =
       opening_.options.unsaved_edits && session->view().input == opening_.options.view.input;
-  session->leave(!takes_edits_along);
+  if (opening_.restores) {
+    session->leaveForKept();
+  } else {
+    session->leave(!takes_edits_along);
+  }
   next_->takeOver(*session);
   const std::string fault = endStream(*session, next_->options());
   endBeside(std::move(session));
@@ -93,7 +97,7 @@ void SessionOpener::replace(std::unique_ptr<Session>& session) {
   messages_before_.reset();
   files_->is_opening = files_->request.has_value();
   session->shown(opening_.left_out);
-  if (!opening_.note.empty()) session->tell(opening_.note);
+  if (opening_.imports) session->tellImport();
   if (!fault.empty()) session->tell(fault, true);
   Opening none;
   std::swap(opening_, none);
@@ -115,7 +119,7 @@ bool SessionOpener::close(std::unique_ptr<Session>& session) {
   nothing.state.clear();
   nothing.stream.reset();
   nothing.made_of.clear();
-  nothing.made_note.clear();
+  nothing.made_note = {};
   session->leave(true);
   const std::string fault = endStream(*session, nothing);
   endBeside(std::move(session));

@@ -43,9 +43,12 @@ void Session::changeSetting(const Command& command) {
     if (!command.has(name)) return setting.changeToNext(view);
     if (setting.isSwitch()) return setting.change(view, command.boolean(name, false));
     if (setting.isNumber()) return setting.change(view, command.number(name));
-    if (setting.isListOfTexts())
-      return setting.change(view, command.arguments.at(name).get<std::vector<std::string>>());
-    setting.change(view, command.text(name));
+    if (setting.isListOfTexts()) {
+      setting.change(view, command.arguments.at(name).get<std::vector<std::string>>());
+    } else {
+      setting.change(view, command.text(name));
+    }
+    playback::requireMapFiles(view, view_);
   });
 }
 
@@ -86,15 +89,15 @@ void Session::revertRejected() {
       last_shown_ = {view_.quantity, view_.compare, view_.split, view_.settings.iso_value};
     return;
   }
-  showLastQuantity();
+  if (showLastQuantity()) failure_.shown = fieldName(chosenQuantity());
   status_ = live_.status();
 }
 
 /// Returns to quantity and comparison of the last field.
-void Session::showLastQuantity() {
+bool Session::showLastQuantity() {
   if (last_shown_.quantity == view_.quantity && last_shown_.compare == view_.compare &&
       last_shown_.split == view_.split)
-    return;
+    return false;
   leaveField();
   change([this](playback::ViewState& view) {
     view.quantity = last_shown_.quantity;
@@ -102,6 +105,7 @@ void Session::showLastQuantity() {
     view.split = last_shown_.split;
     view.settings.iso_value = last_shown_.iso_value;
   });
+  return true;
 }
 
 std::vector<Verb> Session::pictureVerbs() {

@@ -1,4 +1,5 @@
 /// Questions before a loss: at the end of the program, and before a file is replaced.
+#include <algorithm>
 #include <filesystem>
 
 #include "apps/view/session/session.h"
@@ -11,10 +12,29 @@ bool Session::hasUnsavedColors() const {
   return transfer_ && saved_colors_ && !(transfer_->function() == *saved_colors_);
 }
 
+namespace {
+
+/// When a file, or a folder or an entry of it, was last written.
+fs::file_time_type lastWritten(const fs::path& path) {
+  std::error_code ignored;
+  fs::file_time_type last = fs::last_write_time(path, ignored);
+  for (fs::directory_iterator entry(path, ignored), end; !ignored && entry != end; entry.increment(ignored)) {
+    std::error_code unread;
+    last = std::max(last, fs::last_write_time(entry->path(), unread));
+  }
+  return last;
+}
+
+}  // namespace
+
 void Session::noteWritten(const std::string& file) {
   std::error_code ignored;
   const fs::path path = fs::absolute(file, ignored).lexically_normal();
-  written_[path.string()] = fs::last_write_time(path, ignored);
+  written_[path.string()] = lastWritten(path);
+}
+
+bool Session::mayReplace(const Command& command) const {
+  return command.boolean("replace", !options_.script.empty());
 }
 
 void Session::tellWritten(const std::string& file) {
@@ -27,9 +47,9 @@ bool Session::asksToReplace(const Command& command, const std::string& file) {
   const fs::path path = fs::absolute(file, ignored).lexically_normal();
   const bool is_empty = fs::is_directory(path, ignored) && fs::is_empty(path, ignored);
   const auto written = written_.find(path.string());
-  const bool is_own = written != written_.end() && written->second == fs::last_write_time(path, ignored);
+  const bool is_own = written != written_.end() && written->second == lastWritten(path);
   const bool asks = fs::exists(path, ignored) && !is_empty && !is_own;
-  panels.replace = asks && !command.boolean("replace", !options_.script.empty());
+  panels.replace = asks && !mayReplace(command);
   if (panels.replace) replacing_ = {command, file};
   return panels.replace;
 }

@@ -11,7 +11,7 @@ constexpr NumberLimits kSide_px{16, render::kMaxImageSide, true};
 
 }  // namespace
 
-void Session::record(const RecordRange& range, const std::string& output) {
+void Session::record(const RecordRange& range, const std::string& output, Replaces replaces) {
   if (timeline_.times_s().empty()) throw Error(ErrorCode::bad_input, "record: there is nothing to see yet");
   if (output.empty()) throw Error(ErrorCode::bad_input, "record: name a folder, a .mp4 or a .png");
   RecordJob job;
@@ -21,6 +21,7 @@ void Session::record(const RecordRange& range, const std::string& output) {
   job.target = target_;
   job.frames_per_s = range.frames_per_s;
   job.output = output;
+  job.replaces = replaces;
   files_->recorder.start(job, wake_);
 }
 
@@ -82,7 +83,8 @@ std::vector<Verb> Session::recordVerbs() {
          }
          const bool records = session.files_->recorder.running();  // refused below
          if (!records && session.asksToReplace(command, command.text("file"))) return;
-         session.record(range, command.text("file"));
+         session.record(range, command.text("file"),
+                        session.mayReplace(command) ? Replaces::any : Replaces::own);
          session.panels.record = false;
        }},
       {"record_cancel",

@@ -75,6 +75,7 @@ Json Session::report() const {
               {"unsaved", hasUnsavedEdits()},
               {"input", options_.view.input},
               {"working", working()},
+              {"typing", files_->is_typing},
               {"kept", kept_view_.has_value()},
               {"changed_on_disk", changed_files_.size()},
               {"copied", copied_},

@@ -10,9 +10,9 @@
 #include "base/files/json_writing.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "scenario/file/named_items.h"
 #include "scenario/file/new_items.h"
 #include "scenario/file/parameters.h"
+#include "scenario/model/named_items.h"
 
 namespace emscape::view {
 namespace {
@@ -58,12 +58,19 @@ playback::ScenarioPtr Session::original() const {
 
 void Session::changeScenario(const std::vector<scenario::Edit>& edits) {
   requireScenario();
+  requireMovable(edits);
   edit_queue_.set(edits);
   edit_queue_.begin(*edits_);
 }
 
 void Session::drag(const std::vector<scenario::Edit>& edits) {
   if (!edits_) return;
+  try {
+    requireMovable(edits);
+  } catch (const Error& error) {
+    if (notice_.text != error.message()) tell(error.message(), true);
+    return;
+  }
   edit_queue_.drag(edits);
   edit_queue_.begin(*edits_);
 }
@@ -170,7 +177,7 @@ void Session::showScenario(const std::vector<playback::RenamedItem>& renamed) {
   followNames(renamed);
   indexStreamed();
   watchFiles();
-  timeline_.setScenario(*shown_scenario_);
+  setTimelineScenario();
   if (computedScenario()) {
     // Without a choice by the user the scenario's first quantity is shown, as in `render`.
     const std::string quantity = quantityOf(view_, *before), field = fieldName(quantity);

@@ -47,7 +47,7 @@ playback::ViewState Session::viewState() const {
   view.open_panels.clear();
   if (panels.hidden) view.open_panels.emplace_back("hidden");
   for (const PanelName& panel : panelNames()) {
-    if (panel.stays && panels.*panel.open) view.open_panels.emplace_back(panel.name);
+    if (panel.stays() && panels.*panel.open) view.open_panels.emplace_back(panel.name);
   }
   return view;
 }
@@ -74,7 +74,7 @@ void Session::showView(const playback::ViewState& view) {
   for (const std::string& name : view.open_panels) {
     if (name == "hidden") panels.hidden = true;
     for (const PanelName& panel : panelNames()) {
-      if (panel.stays && name == panel.name) panels.*panel.open = true;
+      if (panel.stays() && name == panel.name) panels.*panel.open = true;
     }
   }
 }

@@ -104,6 +104,7 @@ void Session::measure(const Command& command) {
 void Session::drawTrack(const Command& command) {
   if (command.has("platform")) {
     select("platforms." + scenario::pathStep(command.text("platform")));  // throws if there is none
+    requireMovable(command.text("platform"));
     tool_ = {PickTool::Kind::track, command.text("platform"), {}, {}};
     return;
   }

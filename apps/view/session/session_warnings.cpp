@@ -59,13 +59,27 @@ void Session::joinModelWarnings(double now_s) {
   });
 }
 
+void Session::tellImport() {
+  if (isImported()) tell(importText());
+}
+
+/// What was assumed for the scenario of a recording, as far as it is still true; empty: it is none.
+std::string Session::importText() const {
+  const auto isOn = [](const scenario::Emitter& emitter) { return emitter.enabled; };
+  const bool is_silent =
+      !edits_ || std::none_of(scenario()->emitters.begin(), scenario()->emitters.end(), isOn);
+  return options_.made_note.text(is_silent);
+}
+
 bool Session::takeWarnings(double now_s) {
   checkScenario();
   checkSteps();
   joinModelWarnings(now_s);
   std::vector<std::string> warnings;
   // A scenario that is read again, as the reference of a comparison, logs its warnings again.
-  if (!options_.made_note.empty()) warnings.push_back(options_.made_note);
+  const std::string import = importText(), import_before = std::exchange(import_text_, import);
+  if (!import.empty()) warnings.push_back(import);
+  if (import != import_before && notice_.text == import_before) notice_ = {};  // no longer true
   for (const auto& lines : {files_->messages->lines(), scenario_warnings_, step_warnings_, model_warnings_}) {
     for (const std::string& line : lines) {
       if (std::find(warnings.begin(), warnings.end(), line) == warnings.end()) warnings.push_back(line);

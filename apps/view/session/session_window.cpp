@@ -1,6 +1,7 @@
 /// Verbs of the window.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "apps/view/files/file_endings.h"
@@ -22,18 +23,29 @@ std::vector<const char*> panelChoices() {
 }  // namespace
 
 const std::vector<PanelName>& panelNames() {
+  using Kind = PanelKind;
   static const std::vector<PanelName> all{
-      {"scenario", &Panels::scenario, true},  {"colors", &Panels::colors, true},
-      {"planes", &Panels::planes, true},      {"probe", &Panels::probe, true},
-      {"timeline", &Panels::timeline, true},  {"help", &Panels::help, false},
-      {"time", &Panels::time, false},         {"open", &Panels::open, false},
-      {"position", &Panels::position, false}, {"map", &Panels::map, false},
-      {"record", &Panels::record, false},     {"restore", &Panels::restore, false},
-      {"unsaved", &Panels::unsaved, false},   {"changed", &Panels::changed, false},
-      {"menu", &Panels::menu, false},         {"replace", &Panels::replace, false},
-      {"warnings", &Panels::warnings, false}, {"side", &Panels::side, false},
+      {"scenario", &Panels::scenario, Kind::docked},   {"colors", &Panels::colors, Kind::docked},
+      {"planes", &Panels::planes, Kind::docked},       {"probe", &Panels::probe, Kind::docked},
+      {"timeline", &Panels::timeline, Kind::docked},   {"help", &Panels::help, Kind::beside},
+      {"time", &Panels::time, Kind::question},         {"open", &Panels::open, Kind::dialog},
+      {"position", &Panels::position, Kind::question}, {"map", &Panels::map, Kind::question},
+      {"record", &Panels::record, Kind::question},     {"restore", &Panels::restore, Kind::question},
+      {"unsaved", &Panels::unsaved, Kind::question},   {"changed", &Panels::changed, Kind::beside},
+      {"menu", &Panels::menu, Kind::beside},           {"replace", &Panels::replace, Kind::question},
+      {"warnings", &Panels::warnings, Kind::question}, {"side", &Panels::side, Kind::beside},
   };
   return all;
+}
+
+bool isOpen(const Panels& panels, PanelKind kind) {
+  const std::vector<PanelName>& all = panelNames();
+  return std::any_of(all.begin(), all.end(),
+                     [&](const PanelName& panel) { return panel.kind == kind && panels.*panel.open; });
+}
+
+bool isDialogOpen(const Panels& panels) {
+  return isOpen(panels, PanelKind::dialog) || isOpen(panels, PanelKind::question);
 }
 
 std::vector<Verb> Session::windowVerbs() {
@@ -55,7 +67,7 @@ std::vector<Verb> Session::windowVerbs() {
            open = command.boolean("open", session.panels.hidden || !open);
            if (!open) continue;
            session.panels.hidden = false;
-           if (panel.stays) session.panels.side = true;
+           if (panel.stays()) session.panels.side = true;
          }
        }},
       {"scale",
@@ -103,12 +115,10 @@ std::vector<Verb> Session::windowVerbs() {
          Panels& panels = session.panels;
          // A question, the help or a file browser over another dialog is closed alone.
          if (std::exchange(panels.replace, false)) return;
-         const bool asks =
-             panels.restore || panels.unsaved || panels.record || panels.time || panels.warnings;
-         if (asks && std::exchange(panels.help, false)) return;
-         if (panels.record && std::exchange(panels.open, false)) return;
+         if (isOpen(panels, PanelKind::question) && std::exchange(panels.help, false)) return;
+         if ((panels.record || panels.map) && std::exchange(panels.open, false)) return;
          for (const PanelName& panel : panelNames()) {
-           if (!panel.stays) was_open |= std::exchange(panels.*panel.open, false);
+           if (!panel.stays()) was_open |= std::exchange(panels.*panel.open, false);
          }
          const ProgramState program = session.programState();
          const bool plays = program.activity == Activity::playing;

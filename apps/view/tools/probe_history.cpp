@@ -76,6 +76,9 @@ void ProbeHistory::ask(HistoryQuestion question) {
   clear();
   question_ = question;
   work_ = std::make_shared<Work>();
+  work_->values.times_s = question.times_s;
+  work_->values.values.assign(question.times_s.size(), std::numeric_limits<float>::quiet_NaN());
+  values_ = work_->values;
   worker_.push(
       [question = std::move(question), work = work_, wake = wake_] { compute(question, *work, wake); });
 }
@@ -99,11 +102,6 @@ void ProbeHistory::compute(const HistoryQuestion& question, Work& work, const st
     arena.run([&] {
       playback::FieldSeries series(question.input, question.times_s, optionsOf(question), &work.stop);
       const std::size_t channel = channelIn(series, question.channel);
-      {
-        const std::lock_guard<std::mutex> lock(work.mutex);
-        work.values.times_s = question.times_s;
-        work.values.values.assign(question.times_s.size(), std::numeric_limits<float>::quiet_NaN());
-      }
       for (int step = 0; step < series.count(); ++step) {
         const std::shared_ptr<const volume::DenseVolume> volume = series.compute(step)[channel].host();
         const float value =

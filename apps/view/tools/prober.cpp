@@ -13,7 +13,7 @@
 #include "emscape/base/error.h"
 #include "playback/editing/edit_history.h"
 #include "playback/editing/pick.h"
-#include "scenario/file/named_items.h"
+#include "scenario/model/named_items.h"
 
 namespace emscape::view {
 namespace {
@@ -45,7 +45,9 @@ class Prober::Reader {
     Answer answer;
     answer.lock = question.lock;
     ProbeResult& result = answer.result;
-    const bool is_beside = question.pixel && question.pixel->x < picture.split_column;
+    const bool is_beside =
+        picture.beside && (question.pixel ? question.pixel->x < picture.split_column : question.is_beside);
+    result.is_beside = is_beside;
     result.scenario = is_beside ? nullptr : picture.scenario;
     result.quantity = picture.info().quantity;
     result.floor = picture.info().floor;
@@ -132,6 +134,7 @@ void Prober::lockAtPixel(double x, double y) {
 void Prober::lockAt(const Vec3d& position_m) {
   is_locked_ = is_due_ = true;
   locked_m_ = position_m;
+  locked_beside_ = false;
   ++lock_;
 }
 
@@ -139,6 +142,7 @@ void Prober::toggleLock() {
   if (is_locked_) return unlock();
   if (result_ && result_->reading) {
     lockAt(result_->reading->position_m);
+    locked_beside_ = result_->is_beside;
   } else if (pixel_) {
     lockAtPixel(pixel_->x, pixel_->y);
   }
@@ -153,14 +157,19 @@ void Prober::unlock() {
 
 void Prober::ask(const PicturePtr& picture) {
   is_due_ = false;
-  if (!is_locked_ && !pixel_) return;
-  asked_picture_ = picture;
   Question question{picture, std::nullopt, {}, lock_};
   if (locked_m_) {
     question.position_m = *locked_m_;
-  } else {
+    question.is_beside = locked_beside_;
+  } else if (pixel_) {
     question.pixel = pixel_;
+  } else if (!is_locked_ && result_ && result_->reading) {  // the cursor has left the picture
+    question.position_m = result_->reading->position_m;
+    question.is_beside = result_->is_beside;
+  } else {
+    return;
   }
+  asked_picture_ = picture;
   task_.start([reader = reader_, question = std::move(question)] { return (*reader)(question); });
 }
 
@@ -172,6 +181,7 @@ bool Prober::update(const PicturePtr& picture) {
       if (is_locked_ && !locked_m_) {
         if (answer.result.reading) {
           locked_m_ = answer.result.reading->position_m;
+          locked_beside_ = answer.result.is_beside;
         } else {
           is_locked_ = false;
         }
@@ -181,9 +191,10 @@ bool Prober::update(const PicturePtr& picture) {
     }
   }
   if (!is_on_ || !picture || task_.active()) return is_new;
+  const bool is_at_pixel = pixel_ && !locked_m_;
   const bool is_stale =
-      !asked_picture_ || (locked_m_ ? isOtherField(*asked_picture_, *picture) : asked_picture_ != picture);
-  if (is_due_ || (is_stale && (is_locked_ || pixel_))) ask(picture);
+      !asked_picture_ || (is_at_pixel ? asked_picture_ != picture : isOtherField(*asked_picture_, *picture));
+  if (is_due_ || is_stale) ask(picture);
   return is_new;
 }
 

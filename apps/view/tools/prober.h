@@ -35,6 +35,7 @@ struct ProbeResult {
   std::string quantity;  ///< of the volume
   float floor = 0;       ///< of the volume: values at or below it are no field
   double time_s = 0;
+  bool is_beside = false;  ///< of the other scenario of a split picture, on its left
 };
 
 /// The value of the field at the point itself, from the contributions: -infinity without a field. None where
@@ -95,6 +96,7 @@ class Prober {
     std::optional<Pixel> pixel;  ///< empty: the position is used
     Vec3d position_m;
     long long lock = 0;
+    bool is_beside = false;  ///< of the position
   };
   struct Answer {
     ProbeResult result;
@@ -110,6 +112,7 @@ class Prober {
   bool is_locked_ = false;
   long long lock_ = 0;  // counts locks: results of requests before the last lock are dropped
   std::optional<Vec3d> locked_m_;
+  bool locked_beside_ = false;
   // The last request
   PicturePtr asked_picture_;
   std::optional<ProbeResult> result_;

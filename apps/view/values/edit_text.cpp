@@ -57,8 +57,11 @@ std::string editText(const scenario::Scenario& original, const scenario::Edit& e
       end < path.size();
   const std::size_t name_begin = end + 1;
   if (is_named) end = stepEnd(path, name_begin);
-  if (is_named && end == path.size())
-    return path.substr(name_begin) + (edit.value == "null" ? ": removed" : ": added");
+  if (is_named && end == path.size()) {
+    const std::string kind = list.substr(0, list.size() - 1);
+    return fmt::format("{} {}: {}", kind, path.substr(name_begin),
+                       edit.value == "null" ? "removed" : "added");
+  }
   try {
     const ParameterGroup group = scenario::parametersOf(original, path.substr(0, end));
     const Parameter* const parameter = parameterAt(group, path);

@@ -1,9 +1,9 @@
 #include "apps/view/widgets/dialog.h"
 
+#include <GLFW/glfw3.h>
 #include <imgui_internal.h>
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <string>
 #include <utility>
@@ -25,11 +25,29 @@ Place& placeOf(const char* title) {
   return places[title];
 }
 
+/// An item to which Tab goes.
+struct TabStop {
+  ImGuiID item;
+  bool is_text;  ///< gets the cursor; else a mark, with which Enter and Space press it
+};
+
 /// A dialog that was drawn in this frame or the one before.
 struct OpenDialog {
   const char* title;
+  ImGuiID window;
   bool waits;  ///< the rest of the window waits for it
   int frame;
+  std::vector<TabStop> stops{}, stops_before{};  ///< of this frame and the one before
+  ImGuiID focused = 0;                           ///< a stop; 0: none
+  bool arrives = false;                          ///< at it, in this frame
+  bool has_answers = false;                      ///< the arrow keys go from stop to stop, too
+
+  /// The stop with the focus; null: none has it.
+  const TabStop* focusedStop() const {
+    const auto found = std::find_if(stops_before.begin(), stops_before.end(),
+                                    [this](const TabStop& stop) { return stop.item == focused; });
+    return found == stops_before.end() ? nullptr : &*found;
+  }
 };
 
 /// The open dialogs; the one that was opened last is at the end.
@@ -42,21 +60,68 @@ std::vector<OpenDialog>& openDialogs() {
   return dialogs;
 }
 
+/// Of the dialog with this title. Titles with the same text from ### on are one window, which keeps the name
+/// of the first: windows are told by number.
+ImGuiID windowOf(const char* title) {
+  return ImHashStr(title);
+}
+
 void noteOpen(const char* title, Waits waits) {
   std::vector<OpenDialog>& dialogs = openDialogs();
-  const auto known = std::find_if(dialogs.begin(), dialogs.end(), [&](const OpenDialog& dialog) {
-    return std::strcmp(dialog.title, title) == 0;
-  });
+  const auto known = std::find_if(dialogs.begin(), dialogs.end(),
+                                  [&](const OpenDialog& dialog) { return dialog.window == windowOf(title); });
   if (known != dialogs.end()) {
+    known->title = title;
     known->frame = ImGui::GetFrameCount();
   } else {
-    dialogs.push_back({title, waits == Waits::yes, ImGui::GetFrameCount()});
+    OpenDialog& dialog = dialogs.emplace_back();
+    dialog.title = title;
+    dialog.window = windowOf(title);
+    dialog.waits = waits == Waits::yes;
+    dialog.frame = ImGui::GetFrameCount();
   }
 }
 
-bool isOnTop(const char* title) {
+bool isOnTop(ImGuiID window) {
   const std::vector<OpenDialog>& dialogs = openDialogs();
-  return !dialogs.empty() && std::strcmp(dialogs.back().title, title) == 0;
+  return !dialogs.empty() && dialogs.back().window == window;
+}
+
+/// The dialog of the present window; null: it is none.
+OpenDialog* presentDialog() {
+  for (OpenDialog& dialog : openDialogs()) {
+    if (dialog.window == ImGui::GetCurrentWindow()->RootWindow->ID) return &dialog;
+  }
+  return nullptr;
+}
+
+/// True if keys are for the dialog of the present window: not the key that opened it, or closed a list.
+bool takesKeys() {
+  const ImGuiWindow* const window = ImGui::GetCurrentWindow()->RootWindow;
+  return !window->Appearing && !wasPopupOpen() && isOnTop(window->ID);
+}
+
+/// Tab, and with answers the arrow keys, go from stop to stop.
+void moveFocus(OpenDialog& dialog) {
+  dialog.stops_before = std::exchange(dialog.stops, {});
+  dialog.arrives = false;
+  const ImGuiIO& io = ImGui::GetIO();
+  if (!takesKeys() || dialog.stops_before.empty() || io.KeyCtrl || io.KeyAlt) return;
+  // ImGuiIO::KeyMap has no Tab while a dialog is open: Dear ImGui's own would skip all but text fields.
+  const bool is_tab = ImGui::IsKeyPressed(GLFW_KEY_TAB, true);
+  const auto isPressed = [&](ImGuiKey a, ImGuiKey b) {
+    return dialog.has_answers && (isKeyPressed(a, true) || isKeyPressed(b, true));
+  };
+  const bool goes_on = (is_tab && !io.KeyShift) || isPressed(ImGuiKey_RightArrow, ImGuiKey_DownArrow);
+  const bool goes_back = (is_tab && io.KeyShift) || isPressed(ImGuiKey_LeftArrow, ImGuiKey_UpArrow);
+  if (goes_on == goes_back) return;
+  const TabStop* const from = dialog.focusedStop();
+  const auto count = static_cast<int>(dialog.stops_before.size());
+  const int index = from != nullptr ? static_cast<int>(from - dialog.stops_before.data()) : goes_on ? -1 : 0;
+  ImGui::ClearActiveID();  // a field gives its text
+  dialog.focused =
+      dialog.stops_before[static_cast<std::size_t>((index + (goes_on ? 1 : -1) + count) % count)].item;
+  dialog.arrives = true;
 }
 
 /// Gives the focus to the dialog on top, however it was lost, while the rest of the window waits.
@@ -64,9 +129,9 @@ void keepFocus(const char* title) {
   const std::vector<OpenDialog>& dialogs = openDialogs();
   const bool waits =
       std::any_of(dialogs.begin(), dialogs.end(), [](const OpenDialog& dialog) { return dialog.waits; });
-  if (!waits || !isOnTop(title) || isPopupOpen()) return;
+  if (!waits || !isOnTop(windowOf(title)) || isPopupOpen()) return;
   const ImGuiWindow* const focused = ImGui::GetCurrentContext()->NavWindow;
-  if (focused == nullptr || std::strcmp(focused->RootWindow->Name, title) != 0) ImGui::SetNextWindowFocus();
+  if (focused == nullptr || focused->RootWindow->ID != windowOf(title)) ImGui::SetNextWindowFocus();
 }
 
 void drawShadow(ImDrawList& list, const Place& place, float scale) {
@@ -130,7 +195,36 @@ bool beginDialog(PanelContext& context, const char* title, bool& open, const ImV
                       std::clamp(at.y, margin, std::max(margin, screen.y - margin - own.y))};
   if (inside.x != at.x || inside.y != at.y) ImGui::SetWindowPos(inside);
   placeOf(title) = {inside, {inside.x + own.x, inside.y + own.y}};
+  if (OpenDialog* const dialog = presentDialog(); dialog != nullptr) moveFocus(*dialog);
   return true;
+}
+
+void tabStop() {
+  OpenDialog* const dialog = presentDialog();
+  if (dialog == nullptr) return;
+  const ImGuiID item = ImGui::GetItemID();
+  const bool is_text = (ImGui::GetCurrentContext()->LastItemData.InFlags & ImGuiItemFlags_Inputable) != 0;
+  dialog->stops.push_back({item, is_text});
+  if (is_text && ImGui::IsItemActive()) dialog->focused = item;
+  if (item != dialog->focused) return;
+  const bool arrives = std::exchange(dialog->arrives, false);
+  if (arrives) ImGui::ScrollToItem(ImGuiScrollFlags_KeepVisibleEdgeY);
+  if (is_text) {
+    if (arrives) ImGui::SetKeyboardFocusHere(-1);
+    return;
+  }
+  ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
+                                      ImGui::GetColorU32(ImGuiCol_NavHighlight),
+                                      ImGui::GetStyle().FrameRounding, 0, 0.14F * ImGui::GetFontSize());
+  // Space plays: it must not answer a question that has just come.
+  const bool is_pressed = isEnterPressed() || (!dialog->has_answers && isKeyPressed(ImGuiKey_Space));
+  if (takesKeys() && is_pressed) ImGui::ActivateItem(item);
+}
+
+bool isButtonFocused() {
+  const OpenDialog* const dialog = presentDialog();
+  const TabStop* const stop = dialog != nullptr ? dialog->focusedStop() : nullptr;
+  return stop != nullptr && !stop->is_text;
 }
 
 ImVec2 besideDialogs(const ImVec2& at, const ImVec2& size, const ImVec2& low, const ImVec2& high, float gap) {
@@ -158,42 +252,26 @@ bool defaultButton(const char* text) {
   const bool is_refused = hasRefusedField();  // the dialog would act with the value before
   ImGui::BeginDisabled(is_refused);
   const bool pressed = ImGui::Button((std::string(text) + " (Enter)").c_str());
+  tabStop();
   ImGui::EndDisabled();
   ImGui::SameLine();
-  const bool takes_keys = !is_refused && !ImGui::IsWindowAppearing() && !wasPopupOpen() &&
-                          isOnTop(ImGui::GetCurrentWindow()->RootWindow->Name);
-  return pressed || (takes_keys && isEnterPressed());
+  return pressed || (!is_refused && takesKeys() && !isButtonFocused() && isEnterPressed());
 }
 
-int drawAnswers(const PanelContext& context, const std::string& question,
-                const std::vector<const char*>& answers, int first) {
-  const auto count = static_cast<int>(answers.size());
+int drawAnswers(const std::string& question, const std::vector<const char*>& answers, int first) {
   ImGuiStorage& storage = *ImGui::GetStateStorage();
-  const ImGuiID asked_id = ImGui::GetID("asked"), marked_id = ImGui::GetID("marked");
+  const ImGuiID asked_id = ImGui::GetID("asked");
   const auto asked = static_cast<int>(ImGui::GetID(question.c_str()));
-  const bool is_same = !ImGui::IsWindowAppearing() && storage.GetInt(asked_id) == asked;
-  int marked = is_same ? storage.GetInt(marked_id) : first;
-  const bool takes_keys =
-      !ImGui::IsWindowAppearing() && !wasPopupOpen() && isOnTop(ImGui::GetCurrentWindow()->RootWindow->Name);
-  if (takes_keys) {
-    const bool is_tab = isKeyPressed(ImGuiKey_Tab, true), goes_back = ImGui::GetIO().KeyShift;
-    const auto isPressed = [](ImGuiKey a, ImGuiKey b) {
-      return isKeyPressed(a, true) || isKeyPressed(b, true);
-    };
-    if ((is_tab && !goes_back) || isPressed(ImGuiKey_RightArrow, ImGuiKey_DownArrow)) ++marked;
-    if ((is_tab && goes_back) || isPressed(ImGuiKey_LeftArrow, ImGuiKey_UpArrow)) marked += count - 1;
-    marked %= count;
-  }
+  const bool is_new = ImGui::IsWindowAppearing() || storage.GetInt(asked_id) != asked;
   storage.SetInt(asked_id, asked);
-  storage.SetInt(marked_id, marked);
-  int given = takes_keys && isEnterPressed() ? marked : -1;
-  for (int i = 0; i < count; ++i) {
+  OpenDialog* const dialog = presentDialog();
+  if (dialog != nullptr) dialog->has_answers = true;
+  int given = -1;
+  for (int i = 0; i < static_cast<int>(answers.size()); ++i) {
     if (i > 0) ImGui::SameLine();
     if (ImGui::Button(answers[static_cast<std::size_t>(i)])) given = i;
-    if (i != marked) continue;
-    ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
-                                        ImGui::ColorConvertFloat4ToU32(accentColor(context.session.theme())),
-                                        ImGui::GetStyle().FrameRounding, 0, 2 * context.scale);
+    if (is_new && i == first && dialog != nullptr) dialog->focused = ImGui::GetItemID();
+    tabStop();
   }
   return given;
 }

@@ -22,6 +22,12 @@ bool beginDialog(PanelContext& context, const char* title, bool& open, const ImV
 ImVec2 besideDialogs(const ImVec2& at, const ImVec2& size, const ImVec2& low, const ImVec2& high, float gap);
 void endDialog();
 
+/// Lets Tab go to the item drawn last, in the order of the calls: a text field gets the cursor, any other
+/// item a mark, with which Enter and Space press it. Without effect outside of dialogs.
+void tabStop();
+/// True if an item other than a text field has the mark: Enter is for it.
+bool isButtonFocused();
+
 /// The default button of a dialog, also pressed by Enter if no other dialog was opened after it.
 bool defaultButton(const char* text);
 
@@ -29,7 +35,6 @@ bool defaultButton(const char* text);
 /// gives the one that is marked, at first the one that loses nothing.
 /// @param question  names the question; with another one the mark is at its first place
 /// @return the index of the answer that is given; -1: none yet
-int drawAnswers(const PanelContext& context, const std::string& question,
-                const std::vector<const char*>& answers, int first);
+int drawAnswers(const std::string& question, const std::vector<const char*>& answers, int first);
 
 }  // namespace emscape::view

@@ -9,6 +9,7 @@
 #include <functional>
 #include <string>
 
+#include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/glyphs.h"
 
 namespace emscape::view {
@@ -36,8 +37,11 @@ inline void tooltipOfLongName(const std::string& name, bool is_long) {
 }
 
 /// An entry of a list. The identifiers of the scope must differ by entry.
-inline bool selectableName(const std::string& name, bool is_selected, ImGuiSelectableFlags flags = 0) {
+/// @param has_tab_stop  in a dialog
+inline bool selectableName(const std::string& name, bool is_selected, ImGuiSelectableFlags flags = 0,
+                           bool has_tab_stop = false) {
   const bool is_chosen = ImGui::Selectable("##name", is_selected, flags);
+  if (has_tab_stop) tabStop();
   ImGui::SameLine(0, 0);
   ImGui::TextUnformatted(drawable(name).c_str());
   return is_chosen;

@@ -129,7 +129,7 @@ ImGuiStyle styleOf(render::Theme theme, float scale) {
   c[ImGuiCol_Header] = dark ? rgb(0x252D39) : rgb(0xE1E7EE);
   c[ImGuiCol_HeaderHovered] = dark ? rgb(0x323D4D) : rgb(0xD3DCE6);
   c[ImGuiCol_HeaderActive] = faded(0.6F);
-  c[ImGuiCol_CheckMark] = accent;
+  c[ImGuiCol_CheckMark] = c[ImGuiCol_NavHighlight] = accent;
   c[ImGuiCol_SliderGrab] = faded(0.55F);
   c[ImGuiCol_SliderGrabActive] = accent;
   c[ImGuiCol_Separator] = dark ? rgb(0x2E3743) : rgb(0xCDD4DC);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "emscape/propagation/reflected_ray.h"
+#include "emscape/propagation/steep_ground.h"
 
 namespace emscape::propagation {
 
@@ -29,6 +30,7 @@ struct Explanation {
   /// Only for models with a reflected ray, where the emitter is in sight. The parts are the loss between
   /// isotropic antennas.
   std::optional<PathReflection> reflection;
+  std::optional<SteepGround> steep;  ///< only of `parabolic_equation` over terrain, where it marches
 
   void add(const std::string& key, const std::string& label, double part_db) {
     parts.push_back({key, label, part_db});

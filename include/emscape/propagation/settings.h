@@ -185,11 +185,6 @@ enum class TerminalClutterModel { none, p2108 };
 constexpr auto namesOf(TerminalClutterModel) {
   return std::array{"none", "p2108"};
 }
-/// Ends of paths that may be within clutter.
-enum class ClutterEnds { receiver, both };
-constexpr auto namesOf(ClutterEnds) {
-  return std::array{"receiver", "both"};
-}
 
 /// How the loss at the ends joins a model's.
 enum class ClutterCombination { sum, larger };
@@ -210,7 +205,6 @@ struct Ground {
   TerminalClutterModel terminal_clutter = TerminalClutterModel::none;
   double terminal_clutter_percent = 50;  ///< of locations in which the loss is not exceeded
   double terminal_clutter_below_m = 10;  ///< ends up to this height above the ground are within the clutter
-  ClutterEnds terminal_clutter_ends = ClutterEnds::receiver;
   ClutterCombination terminal_clutter_combine = ClutterCombination::sum;
   SourceLocation location;
 };

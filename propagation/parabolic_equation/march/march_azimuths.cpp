@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <mutex>
+#include <atomic>
 
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
@@ -43,23 +43,22 @@ void checkMarch(const AzimuthMarch& march) {
 void marchAzimuths(const AzimuthMarch& march, float* excess_db) {
   checkMarch(march);
   const std::size_t of_azimuth = std::size_t(march.cells.ranges) * std::size_t(march.cells.heights);
-  std::mutex of_progress;
-  int marched_azimuths = 0;
+  const int groups = (march.azimuths + kStepLanes - 1) / kStepLanes;
+  double all = 0;
+  for (int group = 0; group < groups; ++group) all += march.rangesOfGroup(group * kStepLanes);
+  std::atomic<int> marched_ranges = 0;
   const LaneMarchPlan plan = laneMarchPlan(march);
-  parallelFor((march.azimuths + kStepLanes - 1) / kStepLanes, 1, [&](int begin, int end) {
+  parallelFor(groups, 1, [&](int begin, int end) {
     for (int group = begin; group < end; ++group) {
       const int first = group * kStepLanes, count = std::min(kStepLanes, march.azimuths - first);
       LaneMarch of_group(plan, first, count);
       RadialCells marched = march.cells;
       marched.ranges = march.rangesOfGroup(first);
-      const auto cells = marchCells(of_group, marched);
+      const auto cells = marchCells(of_group, marched, [&] { reportDone(++marched_ranges / all); });
       for (int l = 0; l < count; ++l) {
         const auto own = std::ptrdiff_t(march.rangesOf(first + l)) * marched.heights;
         std::copy_n(cells[l].begin(), own, excess_db + std::size_t(first + l) * of_azimuth);
       }
-      const std::lock_guard lock(of_progress);
-      marched_azimuths += count;
-      reportDone(static_cast<double>(marched_azimuths) / march.azimuths);
     }
   });
 }

@@ -14,7 +14,8 @@
 namespace emscape::propagation {
 
 template <class March>
-std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const RadialCells& cells) {
+std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const RadialCells& cells,
+                                                             const std::function<void()>& ended) {
   constexpr int kLanes = March::kLaneCount;
   if (!(cells.range_step_m >= march.grid().range_step_m)) {
     throw Error(ErrorCode::bad_input,
@@ -61,12 +62,16 @@ std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const
                       : std::numeric_limits<float>::quiet_NaN();
       }
     }
+    if (ended) ended();
   }
   return excess_db;
 }
 
-template std::array<std::vector<float>, 1> marchCells(RadialMarch<double, 1>&, const RadialCells&);
-template std::array<std::vector<float>, 1> marchCells(RadialMarch<float, 1>&, const RadialCells&);
-template std::array<std::vector<float>, 8> marchCells(LaneMarch&, const RadialCells&);
+template std::array<std::vector<float>, 1> marchCells(RadialMarch<double, 1>&, const RadialCells&,
+                                                      const std::function<void()>&);
+template std::array<std::vector<float>, 1> marchCells(RadialMarch<float, 1>&, const RadialCells&,
+                                                      const std::function<void()>&);
+template std::array<std::vector<float>, 8> marchCells(LaneMarch&, const RadialCells&,
+                                                      const std::function<void()>&);
 
 }  // namespace emscape::propagation

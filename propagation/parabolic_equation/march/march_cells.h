@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "propagation/parabolic_equation/march/march.h"
@@ -32,8 +33,10 @@ struct RadialCells {
 /// @return for each lane the losses over free space (dB), ranges x heights, height fastest: the mean of F^2
 /// over all range steps in the cell and the heights in it that are above the ground and below the absorber,
 /// in dB. NaN if there are none.
+/// @param ended  called after each range of cells; may be empty
 /// @throws Error (bad_input) if the cells are shorter than a range step
 template <class March>
-std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const RadialCells& cells);
+std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const RadialCells& cells,
+                                                             const std::function<void()>& ended = {});
 
 }  // namespace emscape::propagation

@@ -118,12 +118,15 @@ StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& 
   hash.add(version);
   hash.add(bytes);
   hash.add(spec.base->hash);
-  std::vector<std::string> files = spec.files;
+  const auto add = [&hash](const std::string& name) {
+    const std::uint32_t crc32 = digestOf(name).crc32;
+    hash.add(fmt::format("{:08x}", crc32));
+    return crc32;
+  };
+  for (const std::string& name : spec.files) add(name);
   if (spec.base->terrain) {
-    const std::vector<std::string> rasters = spec.base->terrain->rasters();
-    files.insert(files.end(), rasters.begin(), rasters.end());
+    for (const std::string& name : spec.base->terrain->rasters()) spec.rasters.emplace_back(name, add(name));
   }
-  for (const std::string& name : files) hash.add(fmt::format("{:08x}", digestOf(name).crc32));
   spec.hash = hash.hex();
   return std::move(spec);
 }

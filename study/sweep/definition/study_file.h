@@ -2,8 +2,10 @@
 /// format.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "emscape/scenario/model/scenario.h"
@@ -55,6 +57,8 @@ struct StudySpec {
   /// them that GDAL reads, such as a shapefile's .prj, and files that the variants' scenarios name. Missing
   /// are files of a setting that is valid only together with those of other factors.
   std::vector<std::string> files;
+  /// Terrain files of `base` with their CRC-32, as they are when the study is read.
+  std::vector<std::pair<std::string, std::uint32_t>> rasters;
   /// FNV-1a (64 bits, hex) of the study, the scenario with its edits, its files and those in `files`.
   std::string hash;
 };

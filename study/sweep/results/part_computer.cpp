@@ -55,6 +55,7 @@ void PartComputer::serve(std::istream& in, const std::function<void(int part)>& 
 void computeParts(const LoadedStudy& loaded, const StudyFolder& folder, const std::vector<int>& parts,
                   const std::string& backend, const PartWorkers& workers, const ProgressSink& progress) {
   if (parts.empty()) return;
+  for (const int part : parts) folder.requireReplaceable(part);  // before the first is computed
   if (workers.jobs > 1 && parts.size() > 1) {
     computeInProcesses(
         parts, workers.jobs, workers.command, [&](int part) { return folder.journalBytes(part); }, progress);

@@ -1,16 +1,17 @@
 #include "study/sweep/results/part_journal.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "base/files/file_digest.h"
 #include "base/files/file_reading.h"
 #include "base/files/json_reading.h"
 #include "base/files/json_writing.h"
+#include "base/files/own_file.h"
 #include "emscape/base/error.h"
 #include "study/sweep/results/part_rows.h"
 
@@ -20,9 +21,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kChecksumDigits = 8;
+/// Of a record, after its checksum.
+constexpr std::string_view kBegin = " {\"row\":";
 
 std::string checksumOf(std::string_view text) {
-  return fmt::format("{:08x}", crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size()));
+  FileDigest digest;
+  addToDigest(text, digest);
+  return fmt::format("{:08x}", digest.crc32);
 }
 
 std::string hexOf(const std::string& bytes) {
@@ -41,6 +46,19 @@ std::string bytesOf(std::string_view hex) {
     bytes += static_cast<char>(byte);
   }
   return bytes;
+}
+
+/// True for what is left of a line whose writing was interrupted: a disk without power leaves zeros.
+/// @param after  what follows its line end: the next record begins with another one
+bool isCutRecord(std::string_view line, std::string_view after) {
+  const std::size_t zeros = line.find('\0');
+  if (zeros == std::string_view::npos && (after.empty() || after.front() == '\n' || after.front() == '\r'))
+    return line.empty();
+  const std::string_view text = line.substr(0, zeros);
+  const std::string_view checksum = text.substr(0, kChecksumDigits);
+  const std::string_view begin = text.size() > kChecksumDigits ? text.substr(kChecksumDigits) : "";
+  return checksum.find_first_not_of("0123456789abcdef") == std::string_view::npos &&
+         begin.substr(0, kBegin.size()) == kBegin.substr(0, begin.size());
 }
 
 /// @throws Error (bad_input) without a location
@@ -73,15 +91,21 @@ void PartJournal::read(const std::string& text) {
     const std::size_t variant = result.variant;
     finished_.emplace(variant, std::move(result));
   };
-  int number = 0;
+  bool has_record = false;
+  int number = 0, changed = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::string_view line(text.data() + begin, end - begin);
     begin = end + 1;
     ++number;
-    if (line.size() <= kChecksumDigits + 1) continue;
-    const std::string_view content = line.substr(kChecksumDigits + 1);
-    if (line.substr(0, kChecksumDigits) != checksumOf(content)) continue;
+    const std::string_view content = line.substr(std::min(kChecksumDigits + 1, line.size()));
+    if (line.substr(0, kChecksumDigits) != checksumOf(content)) {
+      const bool has_end = end < text.size();
+      if (!isCutRecord(line, has_end ? std::string_view(text).substr(begin) : "-") && changed == 0)
+        changed = number;
+      continue;
+    }
+    has_record = true;
     try {
       readJson<Json>(content, "", readRecord);
     } catch (const Error& error) {
@@ -89,6 +113,11 @@ void PartJournal::read(const std::string& text) {
                   "its checksum is right, but it is not a record of a variant: " + error.message());
     }
   }
+  if (changed == 0) return;
+  if (!has_record) throw Error(ErrorCode::usage, {file_.string()}, std::string("is ") + kForeignFile);
+  throw Error(ErrorCode::bad_input, {file_.string(), changed, 0},
+              "was changed since it was written; put it back as it was, or remove the line to compute its "
+              "variant again");
 }
 
 std::vector<std::size_t> PartJournal::unfinished() const {

@@ -19,8 +19,9 @@ class PartJournal {
  public:
   /// Opens or creates the file and reads it.
   /// @param variants  of the part, in the plan's order; lines of other variants are ignored
-  /// @throws Error (other) naming the file; (bad_input) with the line number, for a line with a valid
-  /// checksum that is not a record of a variant
+  /// @throws Error (other) naming the file; (usage) for a file without any record that is not the beginning
+  /// of one; (bad_input) with the line number, for a line that was changed, and for one with a valid checksum
+  /// that is not a record of a variant
   PartJournal(std::filesystem::path file, std::vector<std::size_t> variants, std::size_t measures);
 
   /// The variants that are not finished, in the plan's order.

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/files/file_digest.h"
 #include "base/files/file_reading.h"
 #include "base/files/folder.h"
 #include "base/files/folder_lock.h"
@@ -46,6 +47,23 @@ auto readRecord(const fs::path& file, const Read& read) {
                           found, expected));
 }
 
+/// Size and checksum of a file in the record of its part.
+Json digestRecord(const FileDigest& digest) {
+  return {{"bytes", digest.bytes}, {"crc32", digest.crc32}};
+}
+
+FileDigest digestOfText(const std::string& text) {
+  FileDigest digest;
+  addToDigest(text, digest);
+  return digest;
+}
+
+/// The checksum of a record, without the member "crc32" that contains it.
+std::uint32_t recordChecksum(Json record) {
+  record.erase("crc32");
+  return digestOfText(dumpJson(record)).crc32;
+}
+
 /// The kept files according to a manifest or the command line.
 KeptFiles keptOf(const Json& manifest) {
   const std::string name = manifest.value("kept", toString(KeptFiles::nothing));
@@ -73,8 +91,8 @@ int partsOf(const Json& record) {
 StudyFolder::StudyFolder(fs::path folder, const StudySpec& study, const StudyPlan& plan, std::string version)
     : folder_(std::move(folder)), study_(study), plan_(plan), version_(std::move(version)) {}
 
-std::vector<std::string> StudyFolder::files(const StudySpec& study) {
-  std::vector<std::string> names{kManifest, kCsv, kNetcdf, "report.html"};
+std::vector<std::string> StudyFolder::results(const StudySpec& study) {
+  std::vector<std::string> names{kCsv, kNetcdf, "report.html"};
   if (study.sites) names.emplace_back(kSites);
   return names;
 }
@@ -166,8 +184,28 @@ bool StudyFolder::hasPart(int part) const {
       failForeign(file, fmt::format("{} in {} parts", hash, parts),
                   fmt::format("{} in {}", study_.hash, parts_));
     }
+    const auto require = [&](bool is_as_written, const fs::path& changed, const char* fault) {
+      if (is_as_written) return;
+      throw Error(ErrorCode::bad_input, {changed.string()},
+                  fmt::format("{}; put it back as it was, or move {} away: --resume computes the part again",
+                              fault, partFile(part, "*").string()));
+    };
+    require(record.contains("crc32"), file, "has no checksum, as parts of earlier versions");
+    require(record["crc32"] == recordChecksum(record), file, "was changed since it was written");
+    for (const char* const ending : endingsOfPart()) {
+      const fs::path beside = partFile(part, ending);
+      std::error_code ignored;
+      require(fs::is_regular_file(beside, ignored), beside, "is not there");
+      require(record.at(ending) == digestRecord(digestOf(beside)), beside,
+              "was changed since it was written");
+    }
     return true;
   });
+}
+
+std::vector<const char*> StudyFolder::endingsOfPart() const {
+  if (study_.sites) return {"csv", "bits"};
+  return {"csv"};
 }
 
 std::vector<int> StudyFolder::missingParts() const {
@@ -184,7 +222,12 @@ std::vector<std::size_t> StudyFolder::variantsOf(int part) const {
   return {begin + static_cast<std::ptrdiff_t>(range.begin), begin + static_cast<std::ptrdiff_t>(range.end)};
 }
 
+void StudyFolder::requireReplaceable(int part) const {
+  for (const char* const ending : endingsOfPart()) requireOwn(partFile(part, ending));
+}
+
 std::unique_ptr<PartJournal> StudyFolder::journal(int part) const {
+  requireReplaceable(part);
   return std::make_unique<PartJournal>(partFile(part, "rows"), variantsOf(part), study_.measures.size());
 }
 
@@ -196,27 +239,29 @@ std::uintmax_t StudyFolder::journalBytes(int part) const {
 
 void StudyFolder::writePart(int part, const PartJournal& journal) const {
   const std::vector<VariantResult> results = journal.results();
-  std::vector<OutputFile> files;
-  files.push_back({partFile(part, "csv"), [&](std::ostream& out) {
-                     out << "variant";
-                     for (const StudyMeasure& measure : study_.measures) out << ',' << csvCell(measure.name);
-                     out << '\n';
-                     for (const VariantResult& result : results) out << rowOf(result) << '\n';
-                   }});
-  if (study_.sites) {
-    files.push_back({partFile(part, "bits"), [&](std::ostream& out) {
-                       for (const VariantResult& result : results) out << packedPixels(result.pixels);
-                     }});
+  std::string table = "variant", bits;
+  for (const StudyMeasure& measure : study_.measures) table += ',' + csvCell(measure.name);
+  table += '\n';
+  for (const VariantResult& result : results) {
+    table += rowOf(result) + '\n';
+    bits += packedPixels(result.pixels);
   }
   const PartRange range = rangeOfPart(plan_.order.size(), part, parts_);
-  const Json record{{"hash", study_.hash},
-                    {"part", part},
-                    {"parts", parts_},
-                    {"order", {range.begin, range.end}},
-                    {"emscape", version_},
-                    {"machines", journal.machines()},
-                    {"pixels", results.empty() ? 0 : results.front().pixels.size()},
-                    {"warnings", journal.warnings()}};
+  Json record{{"hash", study_.hash},
+              {"part", part},
+              {"parts", parts_},
+              {"order", {range.begin, range.end}},
+              {"emscape", version_},
+              {"machines", journal.machines()},
+              {"pixels", results.empty() ? 0 : results.front().pixels.size()},
+              {"warnings", journal.warnings()}};
+  std::vector<OutputFile> files;
+  for (const std::string ending : endingsOfPart()) {
+    const std::string& text = ending == "csv" ? table : bits;
+    record[ending] = digestRecord(digestOfText(text));
+    files.push_back({partFile(part, ending.c_str()), [&text](std::ostream& out) { out << text; }});
+  }
+  record["crc32"] = recordChecksum(record);
   files.push_back({partFile(part, "json"), [&](std::ostream& out) { out << dumpJson(record, 2) << '\n'; }});
   writeWhole(files);
   std::error_code ignored;

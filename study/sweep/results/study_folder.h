@@ -2,7 +2,8 @@
 ///
 ///     manifest.json          the study's hash, its number of parts, the variants and their settings
 ///     parts/part_00003.csv   variant, measures; written when the part is complete
-///     parts/part_00003.json  the hash, the machines, warnings; written last
+///     parts/part_00003.bits  of a search for sites: the pixels of each variant
+///     parts/part_00003.json  the hash, the machines, warnings, checksums; written last
 ///     parts/part_00003.rows  the finished variants of an incomplete part
 ///     variants/              the kept files of each variant (VariantFiles)
 ///     results.csv results.nc report.html
@@ -40,8 +41,8 @@ struct StudyResults {
 class StudyFolder {
  public:
   static constexpr const char* kSites = "sites.geojson";
-  /// Names of the files that a study writes into its folder, besides those in parts/ and variants/.
-  static std::vector<std::string> files(const StudySpec& study);
+  /// Names of the files in the folder that each merging of the parts writes again.
+  static std::vector<std::string> results(const StudySpec& study);
 
   /// @param version  of the program
   StudyFolder(std::filesystem::path folder, const StudySpec& study, const StudyPlan& plan,
@@ -59,13 +60,16 @@ class StudyFolder {
   int parts() const { return parts_; }
   /// The files that are kept of each variant; after begin().
   KeptFiles kept() const { return kept_; }
-  /// @throws Error (bad_input) if the part belongs to another study
+  /// @throws Error (bad_input) if the part belongs to another study, or was changed since it was written
   bool hasPart(int part) const;
+  /// @throws Error (bad_input) as hasPart()
   std::vector<int> missingParts() const;
 
   /// The variants of a part, in the plan's order.
   std::vector<std::size_t> variantsOf(int part) const;
-  /// The finished variants of an incomplete part.
+  /// @throws Error (usage) as requireOwn() for a file of an incomplete part, which writePart() would replace
+  void requireReplaceable(int part) const;
+  /// The finished variants of an incomplete part. @throws Error (usage) as requireReplaceable()
   std::unique_ptr<PartJournal> journal(int part) const;
   /// Size of the journal (bytes), which grows with each finished variant; 0 without a journal.
   std::uintmax_t journalBytes(int part) const;
@@ -73,7 +77,7 @@ class StudyFolder {
   /// @throws Error (other)
   void writePart(int part, const PartJournal& journal) const;
 
-  /// @throws Error (bad_input) for a part of another study, or one that cannot be read
+  /// @throws Error (bad_input) as hasPart(), and for a part that cannot be read
   StudyResults read() const;
 
   /// Writes results.csv and results.nc.
@@ -89,6 +93,8 @@ class StudyFolder {
   };
   std::optional<Manifest> readManifest() const;
   std::filesystem::path partFile(int part, const char* ending) const;
+  /// Of the files of a part beside its record.
+  std::vector<const char*> endingsOfPart() const;
   void readPart(int part, StudyResults& results) const;
 
   std::filesystem::path folder_;

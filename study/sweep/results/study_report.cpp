@@ -7,10 +7,11 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
-#include "base/files/file_digest.h"
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
+#include "base/text/count_text.h"
 #include "base/text/quantity_text.h"
 #include "document/schema_check.h"
 #include "emfield/excess/clutter_text.h"
@@ -79,12 +80,9 @@ class ReportWriter {
         {"Scenario", fmt::format("{} ({})", study_.base->name, study_.base->file)}};
     for (const scenario::Edit& edit : study_.base->edits())
       inputs.emplace_back("Changed by --set", scenario::toString(edit));
-    if (study_.base->terrain) {
-      for (const std::string& file : study_.base->terrain->rasters())
-        inputs.emplace_back("Terrain",
-                            fmt::format("{}, CRC-32 {:08x}", std::filesystem::path(file).filename().string(),
-                                        digestOf(file).crc32));
-    }
+    for (const auto& [file, crc32] : study_.rasters)
+      inputs.emplace_back("Terrain", fmt::format("{}, CRC-32 {:08x}",
+                                                 std::filesystem::path(file).filename().string(), crc32));
     inputs.emplace_back("Clutter", emfield::clutterText(*study_.base));
     report_.facts(inputs);
     report_.facts({{"Study", study_.file},
@@ -120,10 +118,21 @@ class ReportWriter {
   void addSites(const std::filesystem::path& file) {
     const std::size_t m = study_.sites->measure;
     const MapGrid grid = mapGridOf(study_);
-    std::vector<std::vector<std::uint8_t>> pixels;
+    // Of equal sites the first is chosen: those at sea level, which may be water, come last.
+    const scenario::TerrainPtr terrain = terrainOfSites();
+    std::vector<bool> are_at_sea;
+    for (const std::size_t v : computed_) are_at_sea.push_back(isAtSeaLevel(terrain.get(), v));
+    std::vector<std::size_t> order(computed_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_partition(order.begin(), order.end(), [&](std::size_t site) { return !are_at_sea[site]; });
+    std::vector<std::vector<std::uint8_t>> ordered, pixels;
+    for (const std::size_t site : order) ordered.push_back(results_.pixels[computed_[site]]);
     for (const std::size_t v : computed_) pixels.push_back(results_.pixels[v]);
-    const std::vector<std::size_t> chosen =
-        chooseSites(pixels, grid.areas_m2, static_cast<std::size_t>(study_.sites->choose));
+    std::vector<std::size_t> chosen =
+        chooseSites(ordered, grid.areas_m2, static_cast<std::size_t>(study_.sites->choose));
+    for (std::size_t& site : chosen) site = order[site];
+    std::sort(chosen.begin(), chosen.end());
+    summary_.equal_sites = equalSites(pixels, grid.areas_m2, chosen);
     const StudyMeasure& measure = study_.measures[m];
     const auto together = [&](const std::vector<std::size_t>& sites) {
       const double km2 = coveredWeight(pixels, grid.areas_m2, sites) / 1e6;
@@ -144,24 +153,23 @@ class ReportWriter {
         {},
         ""};
     std::vector<std::size_t> so_far;
-    const scenario::TerrainPtr terrain = terrainOfSites();
     std::string at_sea;
     for (const std::size_t site : chosen) {
       so_far.push_back(site);
       const std::size_t v = computed_[site];
       const VariantFactor& factor = study_.variants.factors().front();
-      summary_.sites.push_back(
-          {factor.names[v], degrees(v, 0), degrees(v, 1), isAtSeaLevel(terrain.get(), v)});
+      summary_.sites.push_back({factor.names[v], degrees(v, 0), degrees(v, 1), are_at_sea[site]});
       if (summary_.sites.back().is_at_sea_level) at_sea += (at_sea.empty() ? "" : ", ") + factor.names[v];
       table.rows.push_back({factor.names[v], factor.value(v, 0), factor.value(v, 1), text(v, m),
                             figureText(together(so_far), unitOf(measure))});
     }
     if (!chosen.empty()) summary_.sites_value = together(chosen);
     report_.table(table);
+    if (summary_.equal_sites > 0) report_.paragraph(equalSitesText(summary_) + ".");
     if (!at_sea.empty())
       report_.paragraph("The ground is at sea level, which may be water, at: " + at_sea +
                         ". To search on land, name candidates there in a table ('candidates').");
-    writeCandidates(file, m, chosen);
+    writeCandidates(file, m, chosen, are_at_sea);
   }
 
   /// Null where the elevation files are no longer there: the report does without.
@@ -185,7 +193,7 @@ class ReportWriter {
 
   /// All candidates as points with their measure; `chosen` counts from 1.
   void writeCandidates(const std::filesystem::path& file, std::size_t m,
-                       const std::vector<std::size_t>& chosen) const {
+                       const std::vector<std::size_t>& chosen, const std::vector<bool>& are_at_sea) const {
     using SitesJson = nlohmann::ordered_json;
     SitesJson features = SitesJson::array();
     for (std::size_t site = 0; site < computed_.size(); ++site) {
@@ -199,6 +207,7 @@ class ReportWriter {
       properties["name"] = study_.variants.factors().front().names[v];
       properties[study_.measures[m].name] = std::isnan(alone) ? SitesJson() : SitesJson(alone);
       properties["chosen"] = rank == chosen.end() ? SitesJson() : SitesJson(rank - chosen.begin() + 1);
+      properties["at_sea_level"] = static_cast<bool>(are_at_sea[site]);
       features.push_back({{"type", "Feature"},
                           {"properties", properties},
                           {"geometry", {{"type", "Point"}, {"coordinates", place}}}});
@@ -337,6 +346,10 @@ class ReportWriter {
 };
 
 }  // namespace
+
+std::string equalSitesText(const StudySummary& summary) {
+  return countText(summary.equal_sites, "other candidate", "other candidates") + " would do as well";
+}
 
 StudySummary writeStudyReport(const std::filesystem::path& file, const StudySpec& study,
                               const StudyPlan& plan, const StudyResults& results) {

@@ -30,7 +30,11 @@ struct StudySummary {
   std::vector<MeasureSummary> measures;
   std::vector<ChosenSite> sites;  ///< of a search: the chosen sites
   double sites_value = 0;         ///< the measure for all chosen sites together
+  std::size_t equal_sites = 0;    ///< other candidates that would do as well in place of a chosen site
 };
+
+/// "3 other candidates would do as well"
+std::string equalSitesText(const StudySummary& summary);
 
 /// Writes the report: the study, extremes of each measure with their variants, each measure over each
 /// parameter, and up to 500 variants as a table; of a search for sites, the chosen sites, and beside the

@@ -56,11 +56,31 @@ struct PathPointing : RayPointing {
   std::optional<RayPointing> reflected;
 };
 
+/// A jammer in a radar's band.
+struct PathJammer {
+  std::string name;
+  double to_signal_db = 0;  ///< its mean power over that of the echo, with the beam on the target
+  double blanked_part = 0;  ///< part (0..1) of its pulses that the radar's side-lobe blanker shuts out if it
+                            ///< jams alone
+  double probability_without = 0;  ///< of detection, if the others jam
+};
+
 /// What jamming does to a radar's detection.
 struct PathJamming {
-  std::string strongest;            ///< the jammer with the most power at the radar; empty: no jamming
-  int others = 0;                   ///< number of further jammers in its band
+  std::vector<PathJammer> jammers;  ///< by their power at the radar, the largest first; empty: no jamming
   double unjammed_probability = 0;  ///< of detection
+
+  /// Probabilities of detection against noise and jamming, in any range, without clutter and one of the
+  /// losses of the path.
+  struct WithoutClutterAnd {
+    double nothing = 0, ground_cover = 0, terrain = 0, pointing = 0;
+  };
+  /// Of a target that is not detected (Pd < 0.5); else empty.
+  std::optional<WithoutClutterAnd> without_clutter;
+  double unjammed_in_any_range = 0;  ///< probability of detection without limits of range, too
+  /// By how much the echo is too weak (dB) for detection (Pd 0.5) against noise and jamming, without clutter
+  /// and in any range; empty if the target is detected, or not with an echo 200 dB stronger.
+  std::optional<double> missing_db;
 };
 
 /// One line of the budget.
@@ -86,14 +106,18 @@ struct PathBudget {
   /// For the terms of detection of a radar whose beam follows the target (RadarLook::target, not a fixed
   /// scan): gain of that beam towards the end of the path, relative to its maximum (dB), <= 0.
   std::optional<double> look_pattern_db;
-  PathJamming jamming;  ///< of the terms of detection
-  std::string unheard;  ///< why the radar detects nothing from this range; empty: it may
+  bool has_fixed_beam = false;          ///< the radar's beam turns to no target: a fixed scan, of no array
+  PathJamming jamming;                  ///< of the terms of detection
+  std::string unheard;                  ///< why the radar detects nothing from this range; empty: it may
+  double probability_in_any_range = 0;  ///< of detection, without the limit of `unheard`
   std::vector<PathObstacle> obstacles;
   propagation::PropagationModel model = propagation::PropagationModel::free_space;
   PathExcess excess;
   /// Power density at the path's end if the antenna had its maximum gain along every ray.
   double boresight_dbwm2 = 0;
   std::vector<BudgetTerm> terms;
+  /// Without that of PathExcess::steep, which is for all paths of the emitter together
+  /// (steepGroundWarnings()).
   std::vector<std::string> warnings;
   std::string verdict;  ///< one sentence
 

@@ -42,8 +42,6 @@ struct PathProfile {
   double bulge_m(int i) const {
     return ranges_m[i] * (range_m - ranges_m[i]) / (2 * effective_earth_radius_m);
   }
-  /// Height (m) of the ground above the line between the grounds below the ends, which curves with the earth.
-  double relief_m(int i) const;
   /// Radius of the first Fresnel zone.
   double fresnelRadius_m(int i, double wavelength_m) const;
 };
@@ -60,6 +58,12 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
 /// The same in air whose refractivity is linear in height.
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
                             const scenario::Terrain* terrain, bool at_crossings);
+
+/// The profile with posts that are equally far apart, at most half the spacing of the elevation model: they
+/// are at the same places with the ends exchanged, as a march needs them. Without cover.
+/// @throws Error (bad_input) that names the first position without terrain
+PathProfile withEvenPosts(PathProfile profile, const propagation::Atmosphere& atmosphere,
+                          const scenario::Terrain& terrain);
 
 /// Trees and buildings along a path.
 struct PathCover {
@@ -82,7 +86,8 @@ struct PathObstacle {
   double fresnel_radius_m = 0;
   double nu = 0;             ///< P.526-15 eq. (26)
   double knife_edge_db = 0;  ///< J(nu): the loss of this obstacle alone, as a knife edge
-  /// Above the ray only because of the earth's curvature, which is more than the relief of the terrain.
+  /// Above the ray because of the earth's curvature: the smooth earth below the terrain hides the ends from
+  /// each other, and the terrain alone is below the ray or adds less than a quarter of the loss.
   bool is_earth_bulge = false;
   bool is_cover = false;  ///< trees or buildings are nearest to the ray, and the ground is below it
   bool decides = false;   ///< the largest nu of all

@@ -10,6 +10,7 @@
 #include "emscape/base/backend.h"
 #include "emscape/base/progress.h"
 #include "emscape/emfield/columns/surface.h"
+#include "emscape/emfield/solver/steep_ground.h"
 #include "emscape/scenario/model/quantities.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/device_volume.h"
@@ -179,8 +180,10 @@ class FieldSolver {
   MemoryEstimate memoryEstimate() const;
   /// Warnings about the current scenario so far, each once with its count: model limits exceeded, voxels in
   /// the near field, paths across holes of the terrain. Warnings of emitters that have been edited since are
-  /// dropped.
-  std::vector<std::string> warnings() const;
+  /// dropped. Of steep ground, those of the position where an emitter's marches lose most.
+  /// @param steep  receives the marches over steep ground instead of the warnings, where the solver's field
+  /// is one of several that an emitter is warned of together (steepGroundWarnings())
+  std::vector<std::string> warnings(SteepGrounds* steep = nullptr) const;
 
  private:
   struct Impl;

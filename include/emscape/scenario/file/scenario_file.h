@@ -19,7 +19,8 @@ struct ParseResult {
   std::vector<Problem> problems;             ///< in the order of the file
 };
 
-/// Times for which a scenario is read. Warnings about the steps of its clock are given for `series` only.
+/// Times for which a scenario is read. Warnings about the steps of its clock and
+/// about voxels are given for `series` only.
 enum class ReadFor {
   series,       ///< all steps of the clock
   chosen_times  ///< times chosen by the caller

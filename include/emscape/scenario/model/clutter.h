@@ -44,6 +44,8 @@ struct Clutter {
   std::optional<int> sea_state;  ///< 0..6; none: no echo
   bool rain = false;             ///< echo of the atmosphere's rain
   double range_cell_m = 0;       ///< length of the resolution cell after pulse compression, > 0
+  /// Independent samples of the clutter among the pulses that are integrated; none: all of them.
+  std::optional<int> independent_samples;
   std::optional<Mti> mti;
   /// Radial speed of the target in volumes, either sign; none: the mean response of all speeds (canceller),
   /// the middle between two blind speeds (pulse_doppler).

@@ -50,6 +50,14 @@ constexpr auto namesOf(BeamShapeLoss) {
   return std::array{"none", "blake", "barton"};
 }
 
+/// Side-lobe blanking: the receiver is shut for pulses that are stronger, by a threshold, in an auxiliary
+/// channel with an omnidirectional antenna than in the radar's own.
+/// @see L. Maisel, Performance of sidelobe blanking systems, IEEE Trans. AES-4 (1968), p. 174
+struct SideLobeBlanking {
+  double auxiliary_gain_dbi = 0;  ///< of the auxiliary antenna, in every direction
+  double threshold_db = 0;        ///< auxiliary over main power from which a pulse is blanked
+};
+
 /// A radar's own receiver, for signal-to-noise ratio and detection.
 struct RadarReceiver {
   double noise_figure_db = 0;
@@ -68,6 +76,7 @@ struct RadarReceiver {
   int binary_threshold = 0;  ///< M of M-of-N integration, N = pulses; 0: the pulses are summed
   /// For burn-through; none: the ratio that gives a probability of detection of 1/2 in noise.
   std::optional<double> required_signal_to_jammer_db;
+  std::optional<SideLobeBlanking> side_lobe_blanking;
   double target_rcs_m2 = 1;
 };
 
@@ -90,7 +99,7 @@ struct Emitter {
   ScanSpec scan;
   propagation::ModelSettings propagation;
   RadarReceiver receiver;              ///< radars only
-  std::optional<Waveform> waveform;    ///< radars only; none: power_w is also the mean power
+  std::optional<Waveform> waveform;    ///< of radars and jammers; none: power_w is also the mean power
   std::optional<Clutter> clutter;      ///< radars with a waveform only; none: only noise and jamming
   bool enabled = true;                 ///< false: it never transmits, whatever active_s is
   std::vector<TimeInterval> active_s;  ///< empty: always

@@ -1,4 +1,4 @@
-/// The pulses of a radar, and the figures that follow from them.
+/// The pulses of a radar or jammer, and the figures that follow from them.
 #pragma once
 
 #include <optional>
