@@ -60,8 +60,9 @@ TEST(Info, NamesAListOnceAndKeepsEachTextOnALine) {
 
 TEST(Info, MissingLibraryOfOpenVdbIsNamedWithItsPackage) {
   const TemporaryFolder folder;
-  const std::string copy = folder / "emscape", said = folder / "said.txt";
-  std::filesystem::copy_file(besideThisProgram("emscape"), copy);  // without lib/emscape
+  const std::string copy = folder / "bin/emscape", said = folder / "said.txt";
+  std::filesystem::create_directory(folder / "bin");
+  std::filesystem::copy_file(besideThisProgram("emscape"), copy);  // without lib/emscape beside bin/
   const std::string volume = folder.write("volume.vdb", "");
   EXPECT_NE(std::system((copy + " info " + volume + " 2>" + said).c_str()), 0);
   EXPECT_THAT(readFile(said), AllOf(HasSubstr("emscape_vdb.so"), HasSubstr("libopenvdb10.0")));
