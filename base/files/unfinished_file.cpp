@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/large_array.h"
+#include "emscape/base/error.h"
 
 namespace emscape {
 namespace fs = std::filesystem;
@@ -184,40 +185,54 @@ void UnfinishedFile::write(const std::function<void(std::ostream&)>& fill) {
   }
 }
 
-int UnfinishedFile::rename(const std::string& name, Replaces replaces) {
+int UnfinishedFile::rename(const std::string& name, const std::string& target, Replaces replaces) {
   const Descriptor opened(
       ::openat(own_folder_.number(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (!opened.isOpen()) return errno;
-  if (const int cause = recordOwn(file_.parent_path() / name, opened); cause != 0) return cause;
+  if (const int cause = recordOwn(file_.parent_path() / target, opened); cause != 0) return cause;
   struct stat former {};  // who may read a file does not change because it is written anew
-  const bool has_former = ::fstatat(folder_.number(), name.c_str(), &former, AT_SYMLINK_NOFOLLOW) == 0 &&
+  const bool has_former = ::fstatat(folder_.number(), target.c_str(), &former, AT_SYMLINK_NOFOLLOW) == 0 &&
                           S_ISREG(former.st_mode) && former.st_uid == ::geteuid();
   if (has_former && ::fchmod(opened.number(), former.st_mode & 0777) != 0) return errno;
   struct stat own {};
   if (::fsync(opened.number()) != 0 || ::fstat(opened.number(), &own) != 0) return errno;
   published_ = {own.st_dev, own.st_ino};
   const auto renamed = [&](unsigned flags) {
-    return ::renameat2(own_folder_.number(), name.c_str(), folder_.number(), name.c_str(), flags) == 0;
+    return ::renameat2(own_folder_.number(), name.c_str(), folder_.number(), target.c_str(), flags) == 0;
   };
   if (renamed(replaces == Replaces::nothing ? RENAME_NOREPLACE : 0)) return 0;
   if (replaces != Replaces::nothing || (errno != EINVAL && errno != ENOSYS)) return errno;
   // The file system knows no renaming without replacement; a link never replaces.
-  return ::linkat(own_folder_.number(), name.c_str(), folder_.number(), name.c_str(), 0) == 0 ? 0 : errno;
+  return ::linkat(own_folder_.number(), name.c_str(), folder_.number(), target.c_str(), 0) == 0 ? 0 : errno;
+}
+
+std::string UnfinishedFile::keptText() {
+  constexpr int kMost = 99;
+  for (int n = 2; n <= kMost; ++n) {
+    const std::string other = file_.stem().string() + '-' + std::to_string(n) + file_.extension().string();
+    const int cause = rename(file_.filename(), other, Replaces::nothing);
+    if (cause == 0) return "; the new one is kept as " + (file_.parent_path() / other).string();
+    if (cause != EEXIST) break;
+  }
+  return "";
 }
 
 void UnfinishedFile::publish(const std::string& beside) {
   const std::string name = file_.filename();
-  if (replaces_ == Replaces::own) requireOwn(file_);
+  if (replaces_ == Replaces::own) {
+    const std::string foreign = foreignText(file_);  // since the constructor
+    if (!foreign.empty()) throw Error(ErrorCode::usage, {file_.string()}, "is " + foreign + keptText());
+  }
   if (!beside.empty()) requireOwn(file_.string() + beside);
   if (!beside.empty()) {
-    const int cause = rename(name + beside, Replaces::any);
+    const int cause = rename(name + beside, name + beside, Replaces::any);
     if (cause == ENOENT) {
       ::unlinkat(folder_.number(), (name + beside).c_str(), 0);
     } else if (cause != 0) {
       failWriting(file_.string() + beside, causeOf(cause));
     }
   }
-  const int cause = rename(name, replaces_);
+  const int cause = rename(name, name, replaces_);
   if (cause == EEXIST && replaces_ == Replaces::nothing) failExisting(file_);
   if (cause != 0) failWriting(file_, causeOf(cause));
   removeOwnFolder();

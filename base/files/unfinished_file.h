@@ -38,7 +38,8 @@ class UnfinishedFile {
   /// @param beside  ending of a file that belongs to it, as GDAL's .aux.xml: renamed before it if there is
   ///                one, else that of an earlier file is removed; empty: none. One of another program is an
   ///                error
-  /// @throws Error (other) that names the file and the cause; (usage) if a file of that name is to stay
+  /// @throws Error (other) that names the file and the cause; (usage) if a file of that name is to stay. If
+  /// it has come since the constructor, this one is kept as NAME-2, NAME-3 and so on
   void publish(const std::string& beside = "");
   /// Removes the published file again, if it is still there under its name.
   void withdraw();
@@ -46,8 +47,10 @@ class UnfinishedFile {
  private:
   void makeOwnFolder();
   void removeOwnFolder();
-  /// @return errno, 0 if all went well
-  int rename(const std::string& name, Replaces replaces);
+  /// Records, flushes and renames a file of the inner folder. @return errno, 0 if all went well
+  int rename(const std::string& name, const std::string& target, Replaces replaces);
+  /// Keeps the file under a free name. @return the name, to follow why; empty if that failed
+  std::string keptText();
 
   std::filesystem::path file_, temporary_;
   Replaces replaces_;

@@ -91,14 +91,21 @@ TEST_F(OwnFile, IsNotOneOfTheUserNorALinkToAnOwn) {
   EXPECT_EQ(test::readFile(folder_ / "users"), "mine");
 }
 
-// The user may write a file of that name while the output is made.
-TEST_F(OwnFile, IsLookedForAgainWhenTheOutputIsComplete) {
+// The user may write a file of that name while the output is made, which may have taken hours.
+TEST_F(OwnFile, IsKeptUnderAFreeNameIfItsNameWasTakenMeanwhile) {
+  folder_.write("a-2.txt", "mine, too");
   const auto slow = [&](std::ostream& stream) {
     stream << "output";
-    folder_.write("a", "mine");
+    folder_.write("a.txt", "mine");
   };
-  EXPECT_THAT(test::errorOf([&] { writeWhole(folder_ / "a", slow); }, ErrorCode::usage), HasSubstr("/a: is"));
-  EXPECT_EQ(test::readFile(folder_ / "a"), "mine");
+  EXPECT_THAT(test::errorOf([&] { writeWhole(folder_ / "a.txt", slow); }, ErrorCode::usage),
+              testing::AllOf(HasSubstr("/a.txt: is a file that emscape did not write"),
+                             HasSubstr("; the new one is kept as " + (folder_ / "a-3.txt"))));
+  EXPECT_EQ(test::readFile(folder_ / "a.txt"), "mine");
+  EXPECT_EQ(test::readFile(folder_ / "a-2.txt"), "mine, too");
+  EXPECT_EQ(test::readFile(folder_ / "a-3.txt"), "output");
+  EXPECT_TRUE(isOwn(folder_ / "a-3.txt"));
+  EXPECT_EQ(folder_.files().size(), 3u) << "nothing unfinished";
 }
 
 // QGIS changes the header of a GeoPackage that it only shows.
