@@ -11,6 +11,7 @@
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
 #include "apps/emscape/subcommands.h"
+#include "base/files/own_file.h"
 #include "base/files/whole_file.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -106,6 +107,7 @@ int blockage(BlockageCommand command, const GlobalOptions& global) {
   for (const std::string& file : command.outputs) {
     const std::string ending = std::filesystem::path(file).extension();
     if (ending == ".png") {
+      if (!command.force) requireOwn(file);
       render::writePng(file, study::drawBlockage(blockage, command.width));
     } else if (ending == ".csv") {
       study::writeBlockageCsv(blockage, file, replaces);

@@ -395,7 +395,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   const report::RealTimeReport report =
       loop.play([](const report::RealTimeEvent& event) { logInfo(report::lineOf(event)); });
   writer.finish();
-  for (const auto& sink : sinks) sink->finish();
+  playback::finishAll(sinks);
   report::logWarnings(source->warnings());
 
   logInfo(report::summaryOf(report));

@@ -8,6 +8,7 @@
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
 #include "apps/emscape/subcommands.h"
+#include "base/files/own_file.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "report/maps/output_files.h"
@@ -60,8 +61,10 @@ int terrain(const TerrainCommand& command, const GlobalOptions& global) {
   if (!command.picture.empty()) {
     const auto content =
         command.draws_cover ? study::TerrainContent::land_cover : study::TerrainContent::sources;
-    render::writePng(command.picture, study::drawTerrain(result.files, *result.terrain, content,
-                                                         result.needed, title, command.width));
+    const render::Image8 picture =
+        study::drawTerrain(result.files, *result.terrain, content, result.needed, title, command.width);
+    requireOwn(command.picture);
+    render::writePng(command.picture, picture);
     logInfo("wrote " + command.picture);
   }
   if (global.json) {

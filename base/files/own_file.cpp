@@ -109,7 +109,11 @@ std::string lineOf(const std::string& name, const std::string& description) {
 }
 
 bool isListed(const fs::path& list, const std::string& line) {
-  if (line.empty() || fs::is_symlink(list)) return false;
+  const Descriptor opened(::open(list.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  if (line.empty() || !opened.isOpen()) return false;
+  // Another process may be changing it; until the file is closed.
+  while (::flock(opened.number(), LOCK_SH) != 0 && errno == EINTR) {
+  }
   const std::string lines = '\n' + readWholeText(list, kMaxListBytes);
   return lines.find('\n' + line) != std::string::npos;
 }

@@ -200,8 +200,15 @@ int UnfinishedFile::rename(const std::string& name, const std::string& target, R
   const auto renamed = [&](unsigned flags) {
     return ::renameat2(own_folder_.number(), name.c_str(), folder_.number(), target.c_str(), flags) == 0;
   };
-  if (renamed(replaces == Replaces::nothing ? RENAME_NOREPLACE : 0)) return 0;
-  if (replaces != Replaces::nothing || (errno != EINVAL && errno != ENOSYS)) return errno;
+  bool is_new = false;
+  if (replaces == Replaces::own) {  // again, as reading and flushing a large file takes seconds
+    is_new = ::fstatat(folder_.number(), target.c_str(), &former, AT_SYMLINK_NOFOLLOW) != 0;
+    if (!is_new && !foreignText(file_.parent_path() / target).empty()) return EEXIST;
+  }
+  if (renamed(is_new || replaces == Replaces::nothing ? RENAME_NOREPLACE : 0)) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return errno;
+  if (is_new) return renamed(0) ? 0 : errno;
+  if (replaces != Replaces::nothing) return errno;
   // The file system knows no renaming without replacement; a link never replaces.
   return ::linkat(own_folder_.number(), name.c_str(), folder_.number(), target.c_str(), 0) == 0 ? 0 : errno;
 }
@@ -210,6 +217,8 @@ std::string UnfinishedFile::keptText() {
   constexpr int kMost = 99;
   for (int n = 2; n <= kMost; ++n) {
     const std::string other = file_.stem().string() + '-' + std::to_string(n) + file_.extension().string();
+    struct stat taken {};
+    if (::fstatat(folder_.number(), other.c_str(), &taken, AT_SYMLINK_NOFOLLOW) == 0) continue;
     const int cause = rename(file_.filename(), other, Replaces::nothing);
     if (cause == 0) return "; the new one is kept as " + (file_.parent_path() / other).string();
     if (cause != EEXIST) break;
@@ -217,13 +226,15 @@ std::string UnfinishedFile::keptText() {
   return "";
 }
 
+void UnfinishedFile::requireStillOwn(const fs::path& file) {
+  const std::string foreign = foreignText(file);
+  if (!foreign.empty()) throw Error(ErrorCode::usage, {file.string()}, "is " + foreign + keptText());
+}
+
 void UnfinishedFile::publish(const std::string& beside) {
   const std::string name = file_.filename();
-  if (replaces_ == Replaces::own) {
-    const std::string foreign = foreignText(file_);  // since the constructor
-    if (!foreign.empty()) throw Error(ErrorCode::usage, {file_.string()}, "is " + foreign + keptText());
-  }
-  if (!beside.empty()) requireOwn(file_.string() + beside);
+  if (replaces_ == Replaces::own) requireStillOwn(file_);
+  if (!beside.empty()) requireStillOwn(file_.string() + beside);
   if (!beside.empty()) {
     const int cause = rename(name + beside, name + beside, Replaces::any);
     if (cause == ENOENT) {
@@ -232,7 +243,11 @@ void UnfinishedFile::publish(const std::string& beside) {
       failWriting(file_.string() + beside, causeOf(cause));
     }
   }
-  const int cause = rename(name, name, replaces_);
+  int cause = rename(name, name, replaces_);
+  if (cause == EEXIST && replaces_ == Replaces::own) {
+    requireStillOwn(file_);
+    cause = rename(name, name, replaces_);  // another process of this program has just written it
+  }
   if (cause == EEXIST && replaces_ == Replaces::nothing) failExisting(file_);
   if (cause != 0) failWriting(file_, causeOf(cause));
   removeOwnFolder();

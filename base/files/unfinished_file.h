@@ -51,6 +51,8 @@ class UnfinishedFile {
   int rename(const std::string& name, const std::string& target, Replaces replaces);
   /// Keeps the file under a free name. @return the name, to follow why; empty if that failed
   std::string keptText();
+  /// Of the file or one beside it, which may have come since the constructor.
+  void requireStillOwn(const std::filesystem::path& file);
 
   std::filesystem::path file_, temporary_;
   Replaces replaces_;

@@ -23,7 +23,7 @@ double drawPictures(FrameSource& source, Painter& painter, const render::FramePl
     if (done) done(index + 1);
   }
   writer.finish();
-  for (const auto& sink : sinks) sink->finish();
+  finishAll(sinks);
   return cast_ms;
 }
 

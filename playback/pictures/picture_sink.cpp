@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <exception>
 #include <set>
 #include <system_error>
 
@@ -155,6 +156,19 @@ std::unique_ptr<PictureSink> makePictureSink(const fs::path& output, const std::
                             output.string(), pictures == kAnyNumber ? "several" : std::to_string(pictures)));
   }
   return std::make_unique<OnePng>(output, comment, replaces);
+}
+
+void finishAll(const std::vector<std::unique_ptr<PictureSink>>& sinks) {
+  std::exception_ptr first;
+  for (const auto& sink : sinks) {
+    try {
+      sink->finish();
+    } catch (const Error& error) {
+      if (first != nullptr) logWarning(error.what());
+      if (first == nullptr) first = std::current_exception();
+    }
+  }
+  if (first != nullptr) std::rethrow_exception(first);
 }
 
 }  // namespace emscape::playback

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/files/own_file.h"
 #include "emscape/render/picture/image.h"
@@ -35,5 +36,8 @@ inline constexpr int kAnyNumber = std::numeric_limits<int>::max();
 std::unique_ptr<PictureSink> makePictureSink(const std::filesystem::path& output, const std::string& name,
                                              int pictures, render::ImageSize size, double frames_per_s,
                                              const std::string& comment, Replaces replaces = Replaces::own);
+
+/// Finishes all, also those after one that fails. @throws what the first one threw; others are warned of
+void finishAll(const std::vector<std::unique_ptr<PictureSink>>& sinks);
 
 }  // namespace emscape::playback

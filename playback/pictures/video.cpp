@@ -8,11 +8,14 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
+#include <thread>
 #include <vector>
 
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 
 extern char** environ;  // NOLINT: POSIX names it so
 
@@ -41,8 +44,8 @@ VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double 
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
 
-  messages_ = memfd_create("ffmpeg's messages", MFD_CLOEXEC);
-  if (messages_ < 0)
+  messages_ = Descriptor(::memfd_create("ffmpeg's messages", MFD_CLOEXEC));
+  if (!messages_.isOpen())
     throw failure(file_.file(), std::string("cannot make a file in memory: ") + std::strerror(errno));
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
@@ -50,8 +53,8 @@ VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double 
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, messages_, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, messages_, STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, messages_.number(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, messages_.number(), STDERR_FILENO);
   // In a process group of its own: a terminal sends Ctrl-C to this program alone, which then ends ffmpeg.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
@@ -77,7 +80,6 @@ VideoFile::~VideoFile() {
     closePipe();
     waitForEnd();
   }
-  if (messages_ >= 0) close(messages_);
 }
 
 void VideoFile::add(const render::Image8& frame) {
@@ -96,7 +98,14 @@ void VideoFile::add(const render::Image8& frame) {
 
 void VideoFile::finish() {
   closePipe();
-  const int status = waitForEnd();
+  // ffmpeg may encode and copy for seconds.
+  int status = 0;
+  for (pid_t ended = 0; (ended = waitpid(process_, &status, WNOHANG)) != process_;) {
+    if (ended < 0 && errno != EINTR) break;
+    checkpoint();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  process_ = -1;
   if (status != 0 || !reported().empty()) fail("ffmpeg could not write the video");
   std::error_code error;
   if (std::filesystem::file_size(file_.temporary(), error) == 0 || error) fail("ffmpeg wrote no video");
@@ -114,7 +123,7 @@ void VideoFile::fail(const std::string& what) {
 std::string VideoFile::reported() const {
   constexpr std::size_t kMaxBytes = 500;
   std::string text(kMaxBytes, '\0');
-  const ssize_t bytes = pread(messages_, text.data(), text.size(), 0);
+  const ssize_t bytes = pread(messages_.number(), text.data(), text.size(), 0);
   text.resize(bytes > 0 ? static_cast<std::size_t>(bytes) : 0);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', end)) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "base/files/descriptor.h"
 #include "base/files/unfinished_file.h"
 #include "emscape/render/picture/image.h"
 
@@ -39,7 +40,7 @@ class VideoFile {
   UnfinishedFile file_;
   const render::ImageSize size_;
   int pipe_ = -1;
-  int messages_ = -1;  ///< a file in memory for ffmpeg's standard output and error
+  Descriptor messages_;  ///< a file in memory for ffmpeg's standard output and error
   pid_t process_ = -1;
 };
 

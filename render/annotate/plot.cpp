@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/files/own_file.h"
 #include "base/files/whole_file.h"
 #include "emscape/base/units.h"
 #include "emscape/base/work.h"
@@ -216,6 +217,7 @@ void drawPlot(ImageSize size, const std::string& file, const std::function<void(
     const std::string text = canvas.svg();
     writeWhole(file, [&](std::ostream& out) { out << text << "<!-- Emscape -->\n"; });
   } else {
+    requireOwn(file);
     writePng(file, canvas.pixels());
   }
 }

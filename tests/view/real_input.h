@@ -127,7 +127,8 @@ class RealInput : public Window {
     return xdotool("key " + keys) && comes([&] {
              int frames = 0;
              bool is_typing = false;
-             for (auto line = log().rbegin(); line != log().rend(); ++line) {
+             const std::vector<Json>& lines = log();  // read once: the next call may move them
+             for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
                if ((*line)["event"] == "command")
                  return (*line)["do"] == verb && frames >= kFrames && is_typing;
                if ((*line)["event"] == "frame" && ++frames == 1) is_typing = (*line)["typing"];

@@ -360,7 +360,7 @@ TEST_F(OpenDialog, ARefusedTextStaysInEachFieldOfADialogUntilItIsMended) {
   EXPECT_TRUE(commandsBecome("panel seek seek")) << commands();
   EXPECT_TRUE(reports("asked_s", 3));
   // The fields of begin and end, one after the other
-  ASSERT_TRUE(xdotool("key ctrl+m sleep 0.5 key Tab Tab Tab Tab Tab sleep 0.2" + type("1x") +
+  ASSERT_TRUE(xdotool("key ctrl+m sleep 0.5 key Tab Tab Tab Tab sleep 0.2" + type("1x") +
                       " key Tab sleep 0.2" + type("3y") +
                       " key Tab sleep 0.3 key shift+Tab sleep 0.2 key End BackSpace shift+Tab sleep 0.2"
                       " key End BackSpace Return"));
@@ -403,7 +403,7 @@ TEST_F(OpenDialog, TabReachesTheButtonsAndComesBackToThePath) {
 TEST_F(OpenDialog, TabGoesThroughTheFieldsAndListsOfTheDialogOfRecordings) {
   open(input("a.yaml"));
   // File, Browse, size, camera, begin, end; and back to the size, whose list the arrow keys go through
-  ASSERT_TRUE(xdotool("key ctrl+m sleep 0.5 key Tab key Tab key Tab key Tab key Tab sleep 0.2" + type("1") +
+  ASSERT_TRUE(xdotool("key ctrl+m sleep 0.5 key Tab key Tab key Tab key Tab sleep 0.2" + type("1") +
                       " key Tab sleep 0.2" + type("2") +
                       " key shift+Tab key shift+Tab key shift+Tab sleep 0.2 key Return sleep 0.5 key Down"
                       " key Return sleep 0.3 key Tab key Tab key Tab sleep 0.2" +

@@ -574,6 +574,25 @@ TEST_F(Opener, CancelledVideoLeavesNoFile) {
   }
 }
 
+// What has the name is still the file from before.
+TEST_F(Opener, ACancelledRecordingIsAskedForAgain) {
+  ASSERT_TRUE(shown_.settle());
+  folder_.write("film.mp4", "mine");
+  const auto record = [this](const char* options) {
+    return fmt::format(R"({{"do":"record","file":"{}",{}}})", folder_ / "film.mp4", options);
+  };
+  shown_.perform(record(R"("step_s":0.01,"replace":true)"));
+  ASSERT_TRUE(shown_.waitUntil([this] {
+    return shown_.files->recorder.progress().pictures > 0 || !shown_.files->recorder.running();
+  }));
+  if (!shown_.files->recorder.running()) GTEST_SKIP() << "no ffmpeg: " << shown_->notice().text;
+  shown_.perform(R"({"do":"record_cancel"})");
+  ASSERT_TRUE(waitUntilRecorded(shown_));
+  shown_.perform(record(R"("replace":false)"));
+  EXPECT_TRUE(shown_->panels.replace);
+  EXPECT_EQ(readFile(folder_ / "film.mp4"), "mine");
+}
+
 TEST_F(Opener, ErrorsOfRecordingAreReported) {
   ASSERT_TRUE(shown_.settle());
   EXPECT_THAT(shown_.perform(R"({"do":"record","file":"x.mp4","begin_s":3,"end_s":1})"),
@@ -603,6 +622,18 @@ TEST_F(Opener, ARecordedPictureThatWasEditedIsAskedForBeforeItIsReplaced) {
   shown_.perform(record);
   EXPECT_TRUE(shown_->panels.replace);
   EXPECT_EQ(readFile(folder_ / "frames/quick_0001.png"), "edited");
+}
+
+TEST_F(Opener, TheDialogOfSaveAsComesBackWithTheNameThatCannotBeWritten) {
+  ASSERT_TRUE(shown_.settle());
+  shown_.perform(R"({"do":"save_as"})");
+  ASSERT_TRUE(shown_->panels.open);
+  const std::string file = folder_ / "none/changed.yaml";
+  shown_.perform(fmt::format(R"({{"do":"save","file":"{}"}})", file));
+  ASSERT_TRUE(shown_.waitUntil([this] { return shown_->notice().is_error; }));
+  EXPECT_THAT(shown_->notice().text, HasSubstr("none does not exist"));
+  EXPECT_TRUE(shown_->panels.open);
+  EXPECT_EQ(shown_.files->browser.proposed(), file);
 }
 
 TEST_F(Opener, AMissingFfmpegIsOneMessage) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <system_error>
 
 #include "base/files/file_reading.h"
 #include "base/files/folder.h"
@@ -37,7 +38,10 @@ std::vector<std::string> readRecentFiles() {
 }
 
 std::vector<std::string> addRecentFile(const std::string& input) {
-  const std::string path = fs::weakly_canonical(fs::absolute(input)).string();
+  std::error_code failure;
+  fs::path canonical = fs::absolute(input, failure);
+  if (!failure) canonical = fs::weakly_canonical(canonical, failure);
+  const std::string path = failure ? input : canonical.string();
   std::vector<std::string> files = readRecentFiles();
   files.erase(std::remove(files.begin(), files.end(), path), files.end());
   if (path.find('\n') == std::string::npos) files.insert(files.begin(), path);

@@ -114,13 +114,14 @@ void Recorder::start(const RecordJob& job, std::function<void()> wake) {
       outcome.text = fmt::format("recorded {} picture{}: {}", counter->total.load(),
                                  counter->total == 1 ? "" : "s", job.output);
     } catch (const Stopped&) {
+      outcome.is_complete = false;
       outcome.text = "recording cancelled: ";
       outcome.text += isVideo(job.output)
                           ? fmt::format("{} is not written", job.output)
                           : fmt::format("{} of {} pictures are in {}", counter->pictures.load(),
                                         counter->total.load(), job.output);
     } catch (const std::exception& error) {
-      outcome = {failureText(error), true};
+      outcome = {failureText(error), true, false};
     }
     if (wake) wake();
     return outcome;

@@ -92,6 +92,7 @@ class Recorder {
   struct Outcome {
     std::string text;
     bool is_error = false;
+    bool is_complete = true;  ///< false: it was cancelled
   };
   /// The result of an ended recording; returned once.
   std::optional<Outcome> takeOutcome();

@@ -42,7 +42,10 @@ void drawDrape(PanelContext& context) {
   ImGui::TextDisabled("Picture on the ground (GeoTIFF, MBTiles)");
   if (!session.view().drape.empty() && listToRemove({session.view().drape}) == 0)
     session.perform({"drape", {{"file", ""}}});
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  if (ImGui::IsWindowAppearing()) {
+    typed.fill('\0');
+    ImGui::SetKeyboardFocusHere();
+  }
   ImGui::SetNextItemWidth(kFieldWidth * context.scale);
   actionField(context, "##file", "file", typed, "Show", [&session](const std::string& file) {
     return file.empty() || session.perform({"drape", {{"file", file}}});
@@ -62,6 +65,7 @@ void drawPlaces(PanelContext& context) {
     files.erase(files.begin() + static_cast<std::ptrdiff_t>(removed));
     session.perform({"places", {{"files", files}}});
   }
+  if (ImGui::IsWindowAppearing()) typed.fill('\0');
   ImGui::SetNextItemWidth(kFieldWidth * context.scale);
   actionField(context, "##file", "file", typed, "Add", [&session](const std::string& file) {
     const bool is_taken = file.empty() || addPlaces(session, file);
@@ -91,10 +95,12 @@ void drawRings(PanelContext& context) {
     session.perform({"range_rings", {{"rings", texts}}});
   }
   const DisplayUnit unit = distanceUnit(session.view().units);
-  if (emitter.empty()) emitter = scenario->emitters.front().name;
+  const auto& emitters = scenario->emitters;
+  const auto has_name = [](const scenario::Emitter& each) { return each.name == emitter; };
+  if (std::none_of(emitters.begin(), emitters.end(), has_name)) emitter = emitters.front().name;
   ImGui::SetNextItemWidth(0.5F * kFieldWidth * context.scale);
   if (beginComboOfName("##emitter", emitter)) {
-    for (const scenario::Emitter& each : scenario->emitters) {
+    for (const scenario::Emitter& each : emitters) {
       pushNameId(each.name);
       if (selectableName(each.name, each.name == emitter)) emitter = each.name;
       ImGui::PopID();
@@ -109,8 +115,9 @@ void drawRings(PanelContext& context) {
   numberField(context, "##spacing", spacing_m, form);
   tabStop();
   ImGui::SameLine();
-  ImGui::BeginDisabled(isRefused(ImGui::GetID("##spacing")));  // it would act with the value before
-  const bool is_added = ImGui::Button("Add");
+  const bool is_refused = isRefused(ImGui::GetID("##spacing"));  // it would act with the value before
+  ImGui::BeginDisabled(is_refused);
+  const bool is_added = ImGui::Button("Add") && !is_refused;
   tabStop();
   ImGui::EndDisabled();
   if (is_added) {
@@ -135,7 +142,10 @@ void drawGoToPosition(PanelContext& context) {
   Session& session = context.session;
   if (!beginDialog(context, "Go to position", session.panels.position)) return;
   static FieldText typed{};
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  if (ImGui::IsWindowAppearing()) {
+    typed.fill('\0');
+    ImGui::SetKeyboardFocusHere();
+  }
   ImGui::SetNextItemWidth(kFieldWidth * context.scale);
   actionField(context, "##position", "36.3N 84.2W, 36°30'12\"N 84°12'W, 16S GF 12345 67890", typed, "Go",
               [&session](const std::string& position) {

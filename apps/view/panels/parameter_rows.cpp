@@ -372,10 +372,11 @@ void ParameterRows::enter(const Parameter& parameter, const std::string& typed) 
   const std::size_t begin = typed.find_first_not_of(' ');
   const std::string text =
       begin == std::string::npos ? "" : typed.substr(begin, typed.find_last_not_of(' ') + 1 - begin);
-  state_.refused = {};
+  if (state_.refused.path == path) state_.refused = {};
   if (text.empty()) {
     if (parameter.required)
-      state_.refused = {path, typed, parameter.name + ": a text is needed", context_.session.scenario()};
+      state_.refused = {path, typed, parameter.name + ": a text is needed", context_.session.scenario(),
+                        /*is_own=*/true};
     else if (parameter.is_given)
       set(path, "null");
     return;
@@ -479,7 +480,9 @@ void ParameterRows::takeRejection(const std::string& path) {
                       context_.session.scenario()};
     state_.sent_path.clear();
   }
-  if (!rejection && state_.sent_path != path && state_.refused.path == path && state_.refused.text.empty())
+  const RefusedText& refused = state_.refused;
+  if (!rejection && state_.sent_path != path && refused.path == path && refused.text.empty() &&
+      !refused.is_own)
     state_.refused = {};
   context_.shows_rejection = context_.shows_rejection || (is_own && state_.refused.path == path);
 }

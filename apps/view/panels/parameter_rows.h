@@ -16,6 +16,7 @@ struct RefusedText {
   std::string path, text;
   std::string why;
   playback::ScenarioPtr scenario;  ///< whose value it was to replace
+  bool is_own = false;             ///< by the row itself, not by the session
 };
 
 /// State of the rows between frames.

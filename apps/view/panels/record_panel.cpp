@@ -100,6 +100,7 @@ void drawOutput(PanelContext& context, Typed& typed) {
   if (!session.files().record_output.empty()) {
     typed.setFile(std::exchange(session.files().record_output, ""));
   }
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(360 * context.scale);
   ImGui::InputText("##file", typed.file, sizeof typed.file, ImGuiInputTextFlags_AutoSelectAll);
   tabStop();

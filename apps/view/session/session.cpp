@@ -223,7 +223,7 @@ bool Session::update() {
   reportFailure();
   revertRejected();
   if (const auto recorded = files_->recorder.takeOutcome()) {
-    if (!recorded->is_error) noteWritten(files_->recorder.progress().output);
+    if (recorded->is_complete) noteWritten(files_->recorder.progress().output);
     tell(recorded->text, recorded->is_error);
     if (std::exchange(quits_when_recorded_, false) && !recorded->is_error) {
       perform({"quit", {{"edits", quit_answers_.value("edits", "ask")}}});

@@ -293,7 +293,8 @@ class Session {
   void showView(const playback::ViewState& view);
   void noteSavedView(const std::string& file);
   /// @param is_named  by the user: it is the document then
-  void saveScenario(const std::string& file, bool is_named);
+  /// @param asks_again  for the name, if the file cannot be written
+  void saveScenario(const std::string& file, bool is_named, bool asks_again = false);
   void quit(const Command& command);
   /// Remembers that the program wrote this file.
   void noteWritten(const std::string& file);
@@ -470,7 +471,7 @@ class Session {
   std::string picture_file_;                              // written when the picture is settled
   std::optional<render::TransferFunction> saved_colors_;  // as fitted, read or written last
   std::optional<Replacing> replacing_;
-  std::map<std::string, std::filesystem::file_time_type> written_;  // outputs of this session, absolute
+  std::map<std::string, std::size_t> written_;  // states of this session's outputs, by absolute name
   Json quit_answers_ = Json::object();
   bool quits_when_recorded_ = false;
   bool opened_unsaved_;    // with unsaved edits

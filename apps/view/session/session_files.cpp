@@ -109,13 +109,21 @@ std::string Session::usualScenarioFile() const {
                      ".edited" + scenario_file.extension().string());
 }
 
-void Session::saveScenario(const std::string& file, bool is_named) {
+void Session::saveScenario(const std::string& file, bool is_named, bool asks_again) {
   const bool is_imported = isImported();  // its tracks are in a folder of ours
-  jobs_.run([this, file, is_named, is_imported, saved = scenario()]() -> BackgroundJobs::Finish {
-    if (is_imported) {
-      scenario::saveWithFiles(*saved, file);
-    } else {
-      scenario::saveScenario(*saved, file);
+  jobs_.run([this, file, is_named, asks_again, is_imported, saved = scenario()]() -> BackgroundJobs::Finish {
+    try {
+      if (is_imported) {
+        scenario::saveWithFiles(*saved, file);
+      } else {
+        scenario::saveScenario(*saved, file);
+      }
+    } catch (const Error& error) {
+      if (!asks_again) throw;
+      return [this, file, why = failureText(error)] {
+        if (!isOccupied()) browse(FileBrowser::Purpose::save_scenario, file);
+        tell(why, true);
+      };
     }
     const auto recent = is_named && !options_.stream ? addRecentFile(file) : std::vector<std::string>();
     return [this, file, is_named, saved, recent] {
@@ -264,8 +272,8 @@ std::vector<Verb> Session::fileVerbs() {
          if (!session.edits_) throw Error(ErrorCode::bad_input, "there is no scenario to save");
          const std::string file = command.has("file") ? command.text("file") : session.usualScenarioFile();
          if (session.asksToReplace(command, file)) return;
-         session.panels.open = false;  // the file browser that asked for the name
-         session.saveScenario(file, command.has("file"));
+         const bool is_of_dialog = std::exchange(session.panels.open, false);
+         session.saveScenario(file, command.has("file"), is_of_dialog);
        }},
       {"save_as",
        {},

@@ -1,6 +1,9 @@
 /// Questions before a loss: at the end of the program, and before a file is replaced.
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <filesystem>
+#include <functional>
+#include <string>
 
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
@@ -14,15 +17,21 @@ bool Session::hasUnsavedColors() const {
 
 namespace {
 
-/// When a file, or a folder or an entry of it, was last written.
-fs::file_time_type lastWritten(const fs::path& path) {
+std::size_t stateOfOne(const fs::path& path) {
   std::error_code ignored;
-  fs::file_time_type last = fs::last_write_time(path, ignored);
-  for (fs::directory_iterator entry(path, ignored), end; !ignored && entry != end; entry.increment(ignored)) {
-    std::error_code unread;
-    last = std::max(last, fs::last_write_time(entry->path(), unread));
-  }
-  return last;
+  const std::uintmax_t bytes = fs::is_directory(path, ignored) ? 0 : fs::file_size(path, ignored);
+  const auto written = fs::last_write_time(path, ignored).time_since_epoch().count();
+  return std::hash<std::string>()(fmt::format("{} {} {}", bytes, written, path.string()));
+}
+
+/// Tells whether a file, or a folder or an entry of it, was written since: names, sizes and times, as times
+/// alone may be equal within some milliseconds.
+std::size_t stateOf(const fs::path& path) {
+  std::error_code failed;
+  std::size_t state = stateOfOne(path);
+  for (fs::directory_iterator entry(path, failed), end; !failed && entry != end; entry.increment(failed))
+    state += stateOfOne(entry->path());  // in any order
+  return state;
 }
 
 }  // namespace
@@ -30,7 +39,7 @@ fs::file_time_type lastWritten(const fs::path& path) {
 void Session::noteWritten(const std::string& file) {
   std::error_code ignored;
   const fs::path path = fs::absolute(file, ignored).lexically_normal();
-  written_[path.string()] = lastWritten(path);
+  written_[path.string()] = stateOf(path);
 }
 
 bool Session::mayReplace(const Command& command) const {
@@ -47,7 +56,7 @@ bool Session::asksToReplace(const Command& command, const std::string& file) {
   const fs::path path = fs::absolute(file, ignored).lexically_normal();
   const bool is_empty = fs::is_directory(path, ignored) && fs::is_empty(path, ignored);
   const auto written = written_.find(path.string());
-  const bool is_own = written != written_.end() && written->second == lastWritten(path);
+  const bool is_own = written != written_.end() && written->second == stateOf(path);
   const bool asks = fs::exists(path, ignored) && !is_empty && !is_own;
   panels.replace = asks && !mayReplace(command);
   if (panels.replace) replacing_ = {command, file};

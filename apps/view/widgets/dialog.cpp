@@ -255,7 +255,7 @@ bool defaultButton(const char* text) {
   tabStop();
   ImGui::EndDisabled();
   ImGui::SameLine();
-  return pressed || (!is_refused && takesKeys() && !isButtonFocused() && isEnterPressed());
+  return !is_refused && (pressed || (takesKeys() && !isButtonFocused() && isEnterPressed()));
 }
 
 int drawAnswers(const std::string& question, const std::vector<const char*>& answers, int first) {

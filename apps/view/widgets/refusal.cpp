@@ -44,6 +44,13 @@ void refuse(ImGuiID field, const std::string& text, const std::string& why, cons
       text, why, value, ImGui::GetCurrentWindow()->RootWindow->ID, ImGui::GetFrameCount(), is_told};
 }
 
+/// The refused text of a field of the present window; the end: none. A dialog that opens again has none.
+std::map<ImGuiID, Refused>::iterator refusedTextOf(ImGuiID field) {
+  auto& texts = refusedTexts();
+  if (ImGui::GetCurrentWindow()->RootWindow->Appearing) texts.erase(field);
+  return texts.find(field);
+}
+
 /// The colours of a field with a refused text, while it lives.
 class RefusedColors {
  public:
@@ -138,7 +145,7 @@ bool numberField(const PanelContext& context, const char* id, double& value, con
   const ImGuiID field = ImGui::GetID(id);
   const std::string shown = form.textOf(value);
   auto& texts = refusedTexts();
-  auto refused = texts.find(field);
+  auto refused = refusedTextOf(field);
   if (refused != texts.end() && refused->second.value != shown) {  // it was changed elsewhere
     texts.erase(refused);
     refused = texts.end();
@@ -175,7 +182,7 @@ void actionField(const PanelContext& context, const char* id, const char* hint, 
   static ImGuiID next_focus = 0;  // the field whose text was refused in the frame before
   const ImGuiID field = ImGui::GetID(id);
   auto& texts = refusedTexts();
-  const auto refused = texts.find(field);
+  const auto refused = refusedTextOf(field);
   const bool is_refused = refused != texts.end() && refused->second.text == typed.data();
   if (is_refused) refused->second.frame = ImGui::GetFrameCount();
   if (next_focus == field) {

@@ -68,13 +68,18 @@ bool wantsTyping() {
 
 bool sliderField(const PanelContext& context, const char* id, double& value, const NumberForm& form) {
   static struct {
-    ImGuiID typing = 0;
+    ImGuiID typing = 0, next = 0;
+    int next_frame = 0;  ///< in which `next` was clicked: the field before gives its text in that frame
     bool is_open = false, is_moved = false;
     double position = 0;
   } state;
   const ImGuiID item = ImGui::GetID(id);
   const float width = ImGui::CalcItemWidth();
   const bool was_refused = isRefused(item);
+  if (state.next == item && ImGui::GetFrameCount() > state.next_frame) {
+    state.typing = std::exchange(state.next, 0);
+    state.is_open = false;
+  }
   if (state.typing == item || was_refused) {
     if (state.typing == item && !state.is_open) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(width);
@@ -88,8 +93,8 @@ bool sliderField(const PanelContext& context, const char* id, double& value, con
   drawValueFrame(id, {form.textOf(value), ImGui::GetStyleColorVec4(ImGuiCol_Text), (value - low) / span},
                  width, context.scale);
   if (wantsTyping()) {
-    state.typing = item;
-    state.is_open = false;
+    state.next = item;
+    state.next_frame = ImGui::GetFrameCount();
     ImGui::ClearActiveID();
     return false;
   }
