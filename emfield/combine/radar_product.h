@@ -219,7 +219,7 @@ struct Blanker {
   /// @param quiet, jammed  pulses with the echo, of the states of low and of high power
   /// @param threshold      noiseOf()
   EMSCAPE_HD float detected(const OpenPulses& quiet, const OpenPulses& jammed, float threshold) const {
-    const float other = 1 - jammed.part, over_other = 1 / (other + 1e-30f);
+    const float other = 1 - jammed.part, over_other = other > 1e-6f ? 1 / other : 0.0f;
     const float no_pulse = fastExp2(curve.pulses * fastLog2(other + 1e-30f)), any = 1 - no_pulse;
     const float over_any = any > 1e-4f ? 1 / any : 1 / (curve.pulses * jammed.part + 1e-30f);
     const OpenPulses none, alone = none.plus(quiet, over_other);

@@ -33,8 +33,7 @@ double freeSpaceDensity_wm2(const Emitter& emitter, const scenario::BeamPose& be
 
 /// Whether an emitter radiates at some time of a duration.
 bool radiates(const scenario::Snapshot& snapshot, const Emitter& emitter, double duration_s) {
-  return duration_s > 0 &&
-         !scenario::activeTimes(*snapshot.scenario, emitter, snapshot.time_s, duration_s).empty();
+  return duration_s > 0 && !scenario::activeTimes(snapshot, emitter, duration_s).empty();
 }
 
 }  // namespace

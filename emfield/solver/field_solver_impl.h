@@ -116,9 +116,9 @@ struct FieldSolver::Impl {
   void noteWarnings(int e);
   void chooseResting(const std::vector<bool>& changed);
   void combine(int begin, int end, const std::vector<bool>& channel_chosen, bool into_static_sums);
-  CombinePass::Member combineMember(int e, double t_s);
-  std::vector<RadarShare> radarShares(int e, double t_s) const;
-  std::vector<OccupancyShare> occupancyShares(int e, double t_s);
+  CombinePass::Member combineMember(const scenario::Snapshot& snapshot, int e);
+  std::vector<RadarShare> radarShares(const scenario::Snapshot& snapshot, int e) const;
+  std::vector<OccupancyShare> occupancyShares(const scenario::Snapshot& snapshot, int e);
   void makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes);
   VolumeRequest volumeRequest(int channel, const scenario::Snapshot& snapshot);
   const std::vector<std::uint16_t>& maskOf(const Channel& channel, ChannelMask& mask) const;

@@ -38,7 +38,7 @@ void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, const Ch
 
 /// An emitter's contributions to channels of radar echoes: in an interval, one for each set of jammers that
 /// radiate at the same time.
-std::vector<RadarShare> FieldSolver::Impl::radarShares(int e, double t_s) const {
+std::vector<RadarShare> FieldSolver::Impl::radarShares(const scenario::Snapshot& snapshot, int e) const {
   const EmitterCache& cache = emitters[e];
   std::vector<RadarShare> shares;
   std::vector<JammedLooks> by_jammers;
@@ -64,8 +64,7 @@ std::vector<RadarShare> FieldSolver::Impl::radarShares(int e, double t_s) const 
       add(whole, is_jammed ? cache.jammers : std::vector<JammerPath>{});
       continue;
     }
-    if (by_jammers.empty())
-      by_jammers = looksByJammers(*setup.scenario, e, cache.state, t_s, *whole, cache.jammers);
+    if (by_jammers.empty()) by_jammers = looksByJammers(snapshot, e, cache.state, *whole, cache.jammers);
     for (const JammedLooks& looks : by_jammers) {
       add(&looks.beam, looks.jammers);
       if (!planned.is_cumulative && channel.emitters.size() == 1)

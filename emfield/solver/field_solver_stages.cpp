@@ -162,7 +162,7 @@ void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
 }
 
 /// An emitter's contributions to the channels.
-CombinePass::Member FieldSolver::Impl::combineMember(int e, double t_s) {
+CombinePass::Member FieldSolver::Impl::combineMember(const scenario::Snapshot& snapshot, int e) {
   const Emitter& emitter = setup.scenario->emitters[e];
   const EmitterState& state = emitters[e].state;
   CombinePass::Member member;
@@ -171,8 +171,8 @@ CombinePass::Member FieldSolver::Impl::combineMember(int e, double t_s) {
   member.antenna = emitter.antenna;
   member.beam_antenna = interval ? interval->antenna : emitter.antenna;
   member.slot = e;
-  member.radars = radarShares(e, t_s);
-  member.occupancies = occupancyShares(e, t_s);
+  member.radars = radarShares(snapshot, e);
+  member.occupancies = occupancyShares(snapshot, e);
   CombineEmitter& part = member.emitter;
   part.emitter_index = e;
   part.beam.forward = vecCast<float>(pose.forward);
@@ -192,7 +192,7 @@ CombinePass::Member FieldSolver::Impl::combineMember(int e, double t_s) {
 }
 
 /// An emitter's contributions to channels of occupancy.
-std::vector<OccupancyShare> FieldSolver::Impl::occupancyShares(int e, double t_s) {
+std::vector<OccupancyShare> FieldSolver::Impl::occupancyShares(const scenario::Snapshot& snapshot, int e) {
   std::vector<OccupancyShare> shares;
   const Emitter& emitter = setup.scenario->emitters[e];
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
@@ -203,7 +203,7 @@ std::vector<OccupancyShare> FieldSolver::Impl::occupancyShares(int e, double t_s
     share.channel = static_cast<int>(c);
     share.threshold_wm2 = threshold_wm2;
     share.eirp_over_4pi_w = static_cast<float>(eirpOf_w(emitter) / (4 * kPi));
-    setPositions(*setup.scenario, whilePresent(*setup.scenario, emitter, t_s), emitters[e].state, t_s,
+    setPositions(*setup.scenario, whilePresent(snapshot, emitter), emitters[e].state, snapshot.time_s,
                  reaches, share);
     shares.push_back(std::move(share));
   }

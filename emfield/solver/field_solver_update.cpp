@@ -187,8 +187,7 @@ void FieldSolver::Impl::findIntervals(const scenario::Snapshot& snapshot) {
       needs_pattern = needs_pattern || (setup.channel_plans[c].reducesPower() &&
                                         std::count(members.begin(), members.end(), static_cast<int>(e)) > 0);
     }
-    const scenario::Emitter emitter =
-        whilePresent(*setup.scenario, setup.scenario->emitters[e], snapshot.time_s);
+    const scenario::Emitter emitter = whilePresent(snapshot, setup.scenario->emitters[e]);
     const auto count = static_cast<double>(emitters.size()), number = static_cast<double>(e);
     const WorkPart part(fmt::format("'{}' over the interval, {} of {}", emitter.name, e + 1, emitters.size()),
                         number / count, (number + 1) / count);
@@ -210,7 +209,7 @@ void FieldSolver::Impl::findCombined(const scenario::Snapshot& snapshot, Changes
   for (int e : report.moved) moved[e] = true;
   for (std::size_t e = 0; e < emitters.size(); ++e) {
     std::optional<CombinePass::Member> before = std::exchange(emitters[e].combined, std::nullopt);
-    if (emitters[e].state.active) emitters[e].combined = combineMember(static_cast<int>(e), snapshot.time_s);
+    if (emitters[e].state.active) emitters[e].combined = combineMember(snapshot, static_cast<int>(e));
     const auto orNull = [](const std::optional<CombinePass::Member>& member) {
       return member ? &*member : nullptr;
     };

@@ -92,25 +92,26 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
   return beam;
 }
 
-Emitter whilePresent(const scenario::Scenario& scenario, const Emitter& emitter, double t_s) {
+Emitter whilePresent(const scenario::Snapshot& snapshot, const Emitter& emitter) {
+  const scenario::Scenario& scenario = *snapshot.scenario;
   const double duration_s =
       scenario::intervalDuration_s(scenario.output.interval, emitter.scan, scenario.clock);
   Emitter present = emitter;
-  std::vector<TimeInterval> times = scenario::activeTimes(scenario, emitter, t_s, duration_s);
+  std::vector<TimeInterval> times = scenario::activeTimes(snapshot, emitter, duration_s);
   if (scenario.platforms[static_cast<std::size_t>(emitter.platform)].moves() && !times.empty())
     present.active_s = std::move(times);
   return present;
 }
 
-std::vector<JammedLooks> looksByJammers(const scenario::Scenario& scenario, int radar,
-                                        const EmitterState& state, double t_s, const IntervalBeam& whole,
+std::vector<JammedLooks> looksByJammers(const scenario::Snapshot& snapshot, int radar,
+                                        const EmitterState& state, const IntervalBeam& whole,
                                         const std::vector<JammerPath>& jammers) {
+  const scenario::Scenario& scenario = *snapshot.scenario;
+  const double t_s = snapshot.time_s;
   const Emitter& emitter = scenario.emitters[static_cast<std::size_t>(radar)];
   const double duration_s =
       scenario::intervalDuration_s(scenario.output.interval, emitter.scan, scenario.clock);
-  const auto timesOf = [&](const Emitter& of) {
-    return scenario::activeTimes(scenario, of, t_s, duration_s);
-  };
+  const auto timesOf = [&](const Emitter& of) { return scenario::activeTimes(snapshot, of, duration_s); };
   const std::vector<TimeInterval> active = timesOf(emitter);
   std::vector<std::vector<TimeInterval>> of_jammers;
   for (const JammerPath& jammer : jammers)
@@ -154,7 +155,7 @@ std::vector<JammedLooks> looksByJammers(const scenario::Scenario& scenario, int 
   const bool counts_cycles = emitter.scan.kind == ScanKind::dwell_list || stays(whole.of_sweep);
   const bool passes_everywhere = emitter.scan.kind == ScanKind::rotate && whole.looks.everywhere >= 1;
   const bool is_cumulative = scenario.output.interval.kind == IntervalKind::cumulative;
-  const ScanSweep sweep = scenario::sweepOf(emitter, t_s, duration_s);
+  const ScanSweep sweep = scenario::sweepOf(whilePresent(snapshot, emitter), t_s, duration_s);
   for (const auto& [radiating, times] : times_by_jammers) {
     Emitter part = emitter;
     part.active_s = times;

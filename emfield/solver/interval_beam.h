@@ -36,10 +36,9 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const scenario::Em
                           const scenario::EmitterState& state, double t_s, bool needs_pattern,
                           const IntervalBeam* before);
 
-/// An emitter that is active only while its platform is present in the interval that begins at t_s; as it is
-/// if it is not active in the interval at all.
-scenario::Emitter whilePresent(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                               double t_s);
+/// An emitter that is active only while its platform is present in the interval that begins with a snapshot;
+/// as it is if it is not active in the interval at all.
+scenario::Emitter whilePresent(const scenario::Snapshot& snapshot, const scenario::Emitter& emitter);
 
 /// The looks of a radar in the times of its interval in which the same jammers radiate.
 struct JammedLooks {
@@ -47,13 +46,13 @@ struct JammedLooks {
   IntervalBeam beam;
 };
 
-/// The looks of a radar in the interval that begins at t_s by the jammers that radiate at their times; one
-/// element if these do not change while the radar is active.
+/// The looks of a radar in the interval that begins with a snapshot by the jammers that radiate at their
+/// times; one element if these do not change while the radar is active.
 /// @param whole    the radar's looks in the interval
 /// @param jammers  that radiate at some time of the interval
-std::vector<JammedLooks> looksByJammers(const scenario::Scenario& scenario, int radar,
-                                        const scenario::EmitterState& state, double t_s,
-                                        const IntervalBeam& whole, const std::vector<JammerPath>& jammers);
+std::vector<JammedLooks> looksByJammers(const scenario::Snapshot& snapshot, int radar,
+                                        const scenario::EmitterState& state, const IntervalBeam& whole,
+                                        const std::vector<JammerPath>& jammers);
 
 /// The frame about whose up axis the arcs of a sweep turn, or in which its dwells are steered.
 scenario::BeamPose sweepFrame(const scenario::Emitter& emitter, const scenario::EmitterState& state);

@@ -8,12 +8,12 @@
 #include "base/files/file_reading.h"
 #include "base/text/unended_line.h"
 #include "scenario/file/parse_sections.h"
+#include "scenario/limits.h"
 #include "scenario/terrain/file_names.h"
 
 namespace emscape::scenario {
 namespace {
 
-constexpr double kMaxVoxels = 2147483648.0;
 constexpr double kMaxVoxelAspect = 1000;  ///< of x over y
 
 /// What an item of terrain.files states of its files.

@@ -76,8 +76,8 @@ void warnOfRanges(const Scenario& scenario, const Section& root, ParseContext& c
 
 /// Whether a jammer radiates into a radar: those of its own platform are left out.
 bool jams(const Emitter& jammer, const Emitter& radar) {
-  return jammer.kind == EmitterKind::jammer && jammer.enabled && jammer.platform != radar.platform &&
-         isInBandOf(radar, jammer);
+  return jammer.kind == EmitterKind::jammer && jammer.enabled && radar.enabled &&
+         jammer.platform != radar.platform && isInBandOf(radar, jammer);
 }
 
 /// Warns about blankers at which more jammers of pulses radiate than the model tells apart.

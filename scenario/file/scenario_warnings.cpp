@@ -272,6 +272,11 @@ void warnOfJammingOverIntervals(const Scenario& scenario, const Section& root, P
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const Emitter& jammer = scenario.emitters[i];
     if (jammer.kind != EmitterKind::jammer || !jammer.enabled) continue;
+    const bool jams_any =
+        std::any_of(scenario.emitters.begin(), scenario.emitters.end(), [&jammer](const Emitter& radar) {
+          return radar.enabled && radar.platform != jammer.platform && isInBandOf(radar, jammer);
+        });
+    if (!jams_any) continue;
     const bool is_directive = jammer.antenna->view().kind != PatternKind::isotropic;
     if (is_directive && scanCycle_s(jammer.scan) > 0) {
       of_beams.add(sections[i].section("scan").location(), jammer.name,
@@ -320,12 +325,14 @@ void warnOfMotionInIntervals(const Scenario& scenario, const Section& root, Pars
                                             .distance_m);
     }
     if (!(farthest_m > voxel_m)) continue;
+    const double fits_s = interval_s * voxel_m / farthest_m;
+    const double digit_s = std::pow(10, std::floor(std::log10(fits_s)) - 1);  // of two
     warning.add(
         sections[p].location(), platform.name,
         fmt::format("platform '{}' moves up to {:.4g} m in an interval of {:g} s, but its emitters are "
-                    "where they are at the volume's time, as all platforms: an interval of {:.2g} s "
+                    "where they are at the volume's time, as all platforms: an interval of {:g} s "
                     "keeps it within a voxel ({:.4g} m)",
-                    platform.name, farthest_m, interval_s, interval_s * voxel_m / farthest_m, voxel_m));
+                    platform.name, farthest_m, interval_s, std::floor(fits_s / digit_s) * digit_s, voxel_m));
   }
   warning.addTo(context.problems);
 }

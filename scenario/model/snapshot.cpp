@@ -129,6 +129,12 @@ BeamPose mountPose(BeamPose pose, const Emitter& emitter) {
 
 }  // namespace
 
+std::vector<TimeInterval> activeTimes(const Snapshot& at, const Emitter& emitter, double duration_s) {
+  const PlatformState& carrier = at.platforms[static_cast<std::size_t>(emitter.platform)];
+  if (!carrier.is_posed) return activeTimes(*at.scenario, emitter, at.time_s, duration_s);
+  return carrier.present ? activeTimes(emitter, at.time_s, duration_s) : std::vector<TimeInterval>();
+}
+
 BeamPose aimed(BeamPose pose, double azimuth_deg, double elevation_deg) {
   aim(pose, azimuth_deg, elevation_deg);
   return pose;
@@ -165,18 +171,14 @@ Snapshot snapshotOf(const std::shared_ptr<const Scenario>& scenario, const Inter
     const Platform& platform = scenario->platforms[p];
     snapshot.platforms.push_back(
         stateAt(*scenario, terrain, pose_of[p] == nullptr ? platform : posed(platform, *pose_of[p]), t_s));
+    snapshot.platforms.back().is_posed = pose_of[p] != nullptr;
   }
   for (const Emitter& emitter : scenario->emitters) {
     const PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(emitter.platform)];
     EmitterState state;
-    const auto platform = static_cast<std::size_t>(emitter.platform);
     const double duration_s = intervalDuration_s(interval, emitter.scan, scenario->clock);
-    if (duration_s > 0 && pose_of[platform] == nullptr) {
-      state.active = !activeTimes(*scenario, emitter, t_s, duration_s).empty();
-    } else {
-      state.active = carrier.present &&
-                     (duration_s > 0 ? activeTime_s(emitter, t_s, duration_s) > 0 : isActiveAt(emitter, t_s));
-    }
+    state.active = duration_s > 0 ? !activeTimes(snapshot, emitter, duration_s).empty()
+                                  : carrier.present && isActiveAt(emitter, t_s);
     state.position = carrier.position;
     state.height_msl_m = carrier.height_msl_m;
     const BeamPose axes = platformAxes(carrier.attitude);

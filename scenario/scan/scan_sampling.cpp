@@ -306,7 +306,8 @@ std::optional<NarrowBeam> narrowBeam(const Scenario& scenario, const Emitter& em
                                                                              : 0.7);
   const auto refine = [&](int& count, int given, double from_m) {
     if (from_m <= wanted_m) return;
-    count = std::max(count, static_cast<int>(std::ceil(given * from_m / wanted_m / 10) * 10));
+    const double finer = std::ceil(given * from_m / wanted_m / 10) * 10;
+    count = std::max(count, static_cast<int>(std::min(finer, kMaxDim + 1.0)));
   };
   for (const Plane& each : planes) {
     refine(narrow.finer.x, dims.x, each.from_level_m);
@@ -336,7 +337,9 @@ std::string narrowBeamText(const Scenario& scenario, const Emitter& emitter, con
     if (helps) text += "; " + more;
     return helps;
   };
-  if (std::max({beam.finer.x, beam.finer.y, beam.finer.z}) <= kMaxDim) {
+  const Dims& finer = beam.finer;
+  if (std::max({finer.x, finer.y, finer.z}) <= kMaxDim &&
+      static_cast<double>(finer.x) * finer.y * finer.z <= kMaxVoxels) {
     addIfItHelps(
         fmt::format("'region: {{dims: [{}, {}, {}]}}' has them no farther than a fifth of the region",
                     beam.finer.x, beam.finer.y, beam.finer.z),

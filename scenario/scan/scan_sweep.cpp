@@ -214,18 +214,26 @@ double activeTime_s(const Emitter& emitter, double begin_s, double duration_s) {
   return active_s;
 }
 
+std::vector<TimeInterval> activeTimes(const Emitter& emitter, double begin_s, double duration_s) {
+  std::vector<TimeInterval> times;
+  visitActive(emitter, begin_s, duration_s, [&](double from_s, double to_s, double) {
+    times.push_back({from_s, to_s});
+  });
+  return times;
+}
+
 std::vector<TimeInterval> activeTimes(const Scenario& scenario, const Emitter& emitter, double begin_s,
                                       double duration_s) {
   const std::vector<TimeInterval> present =
       presentTimes(scenario.platforms[static_cast<std::size_t>(emitter.platform)], scenario.clock, begin_s,
                    begin_s + duration_s);
   std::vector<TimeInterval> times;
-  visitActive(emitter, begin_s, duration_s, [&](double from_s, double to_s, double) {
+  for (const TimeInterval& active : activeTimes(emitter, begin_s, duration_s)) {
     for (const TimeInterval& here : present) {
-      const TimeInterval both{std::max(from_s, here.begin_s), std::min(to_s, here.end_s)};
+      const TimeInterval both{std::max(active.begin_s, here.begin_s), std::min(active.end_s, here.end_s)};
       if (both.begin_s < both.end_s) times.push_back(both);
     }
-  });
+  }
   return times;
 }
 

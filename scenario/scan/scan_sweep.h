@@ -55,6 +55,9 @@ bool isActiveAt(const Emitter& emitter, double t_s);
 /// count once, here and below.
 double activeTime_s(const Emitter& emitter, double begin_s, double duration_s);
 
+/// Times in [begin, begin + duration) at which an emitter is active, ascending, apart.
+std::vector<TimeInterval> activeTimes(const Emitter& emitter, double begin_s, double duration_s);
+
 /// Times in [begin, begin + duration) at which an emitter is active and its platform present, ascending,
 /// apart. A platform whose track reaches the end of the clock stays present after it. Ends that differ from
 /// the interval's by rounding are the interval's.

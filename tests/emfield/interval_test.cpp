@@ -11,6 +11,7 @@
 #include "emfield/excess/model_check.h"
 #include "emfield/solver/interval_beam.h"
 #include "emscape/base/units.h"
+#include "emscape/scenario/model/poses.h"
 #include "scenario/scan/scan_sweep.h"
 #include "tests/emfield/radar_duel.h"
 #include "tests/emfield/scans.h"
@@ -578,6 +579,66 @@ TEST_P(Intervals, AreJammedWhileTheJammersPlatformIsPresent) {
   for (std::size_t v = 0; v < found.size(); ++v) ASSERT_NEAR(found[v], expected[v], 1e-6f) << v;
   platform.outside_track = scenario::OutsideTrack::hold;
   EXPECT_NE(overInterval(scenario, IntervalKind::cumulative, 17), expected);
+}
+
+// The pose of a live exercise holds for the whole interval, whatever the file's track says of that time.
+TEST_P(Intervals, AreJammedWhileAStatedPoseSaysThatTheJammerIsPresent) {
+  const auto scenario = radarAmidBlinkingJammers(rotating(10));
+  scenario->emitters.pop_back();
+  scenario->output.interval = {IntervalKind::cumulative, 17, {}};
+  scenario->emitters[1].active_s.clear();
+  const auto with = [&](bool enabled) {
+    const auto copy = std::make_shared<Scenario>(*scenario);
+    copy->emitters[1].enabled = enabled;
+    FieldSolver solver = solverOf(copy);
+    return valuesOf(solver, copy, kBegin_s);
+  };
+  const UnsetVector<float> jammed = with(true), unjammed = with(false);
+  ASSERT_NE(jammed, unjammed);
+  const int carrier = scenario->emitters[1].platform;
+  scenario::Platform& platform = scenario->platforms[static_cast<std::size_t>(carrier)];
+  const scenario::SitePosition there = platform.track[0].position;
+  for (const bool moves : {false, true}) {
+    if (moves) {  // and comes long after the interval
+      platform.track.push_back(platform.track[0]);
+      platform.track[0].t_s = kBegin_s + 100;
+      platform.track[1].t_s = kBegin_s + 110;
+    }
+    FieldSolver solver = solverOf(scenario);
+    const auto posed = [&](bool is_present) {
+      solver.update(kBegin_s, {{carrier, there, {}, is_present}});
+      return solver.volumes().front().host()->values;
+    };
+    for (const bool is_present : {true, false, true}) {
+      const UnsetVector<float> found = posed(is_present);
+      const UnsetVector<float>& expected = is_present ? jammed : unjammed;
+      for (std::size_t v = 0; v < found.size(); ++v)
+        ASSERT_NEAR(found[v], expected[v], 1e-6f) << v << ' ' << moves << is_present;
+    }
+  }
+}
+
+// What a radar's scan would pass before its platform comes is shared out as without jamming.
+TEST_P(Intervals, OfARadarThatComesInTheirCourseAreTheSameByTheTimesOfAJammerWithoutPower) {
+  for (const ScanSpec& scan : {rotating(3), sweeping(ScanKind::sector, 90, 9)}) {
+    const auto scenario = radarAround(scan);
+    scenario->emitters[0].power_w = 500;
+    addEmitter(*scenario, pointAt(*scenario, 40e3, 30e3), jammerOf(1e-12));
+    std::vector<scenario::TrackPoint>& track =
+        scenario->platforms[static_cast<std::size_t>(scenario->emitters[0].platform)].track;
+    track.push_back(track[0]);
+    track[0].t_s = kBegin_s + 6;
+    track[1].t_s = kBegin_s + 100;
+    const UnsetVector<float> always = overInterval(scenario, IntervalKind::cumulative, 10);
+    scenario->emitters[1].active_s = {{kBegin_s + 7.3, kBegin_s + 8.1}};
+    const UnsetVector<float> in_parts = overInterval(scenario, IntervalKind::cumulative, 10);
+    int between = 0;
+    for (std::size_t v = 0; v < always.size(); ++v) {
+      EXPECT_NEAR(in_parts[v], always[v], 1e-4F) << v << ' ' << int(scan.kind);
+      between += always[v] > 0.05F && always[v] < 0.95F;
+    }
+    EXPECT_GT(between, 10) << int(scan.kind);
+  }
 }
 
 // A beam that stands still has one look in the interval, shared out by time.

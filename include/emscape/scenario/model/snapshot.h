@@ -12,6 +12,7 @@ namespace emscape::scenario {
 /// Position of a platform.
 struct PlatformState {
   bool present = true;  ///< false: before or after its track; the position is that of the track's nearer end
+  bool is_posed = false;  ///< at a stated pose, which holds as long as the snapshot is used, not on its track
   GeodeticPosition position;
   double height_msl_m = 0;
   Attitude attitude;
@@ -51,6 +52,11 @@ struct Snapshot {
   std::vector<EmitterState> emitters;
   std::vector<ReceiverState> receivers;
 };
+
+/// Times in [begin, begin + duration) of a snapshot that begins then, at which an emitter is active and its
+/// platform present, ascending, apart. A platform whose track reaches the end of the clock stays present
+/// after it. Ends that differ from the interval's by rounding are the interval's.
+std::vector<TimeInterval> activeTimes(const Snapshot& at, const Emitter& emitter, double duration_s);
 
 /// A platform's axes (nose, right wing, up) in the local east-north-up axes.
 BeamPose platformAxes(const Attitude& attitude);
