@@ -301,7 +301,7 @@ void warnOfJammingOverIntervals(const Scenario& scenario, const Section& root, P
 /// are at its begin.
 void warnOfMotionInIntervals(const Scenario& scenario, const Section& root, ParseContext& context) {
   if (scenario.output.interval.kind == IntervalKind::instant) return;
-  constexpr double kSamples = 200;
+  constexpr double kSamples = 200, kShortest_s = 1e-3;
   const std::vector<Section> sections = root.sections("platforms");
   const Dims& dims = scenario.region.dims;
   const double voxel_m = std::max(scenario.region.size_m.x / dims.x, scenario.region.size_m.y / dims.y);
@@ -315,24 +315,33 @@ void warnOfMotionInIntervals(const Scenario& scenario, const Section& root, Pars
             std::max(interval_s, intervalDuration_s(scenario.output.interval, emitter.scan, scenario.clock));
     }
     if (!platform.moves() || interval_s == 0) continue;
-    double farthest_m = 0;
     const double step_s = std::max(scenario.clock.step_s, scenario.clock.duration_s / kSamples);
-    for (double t_s = 0; t_s <= scenario.clock.duration_s; t_s += step_s) {
-      const SitePosition from = pointAt(platform, t_s).position,
-                         to = pointAt(platform, t_s + interval_s).position;
-      farthest_m = std::max(farthest_m, geodesicInverse(from.latitude_deg, from.longitude_deg,
-                                                        to.latitude_deg, to.longitude_deg)
-                                            .distance_m);
-    }
+    const auto farthestIn_m = [&](double seconds) {
+      double farthest_m = 0;
+      for (double t_s = 0; t_s <= scenario.clock.duration_s; t_s += step_s) {
+        const SitePosition from = pointAt(platform, t_s).position,
+                           to = pointAt(platform, t_s + seconds).position;
+        farthest_m = std::max(farthest_m, geodesicInverse(from.latitude_deg, from.longitude_deg,
+                                                          to.latitude_deg, to.longitude_deg)
+                                              .distance_m);
+      }
+      return farthest_m;
+    };
+    const double farthest_m = farthestIn_m(interval_s);
     if (!(farthest_m > voxel_m)) continue;
-    const double fits_s = interval_s * voxel_m / farthest_m;
-    const double digit_s = std::pow(10, std::floor(std::log10(fits_s)) - 1);  // of two
+    double fits_s = interval_s;
+    for (double moved_m = farthest_m; moved_m > voxel_m && fits_s > kShortest_s;
+         moved_m = farthestIn_m(fits_s)) {
+      fits_s *= voxel_m / moved_m;
+      const double digit_s = std::pow(10, std::floor(std::log10(fits_s)) - 1);  // of two
+      fits_s = std::floor(fits_s / digit_s) * digit_s;
+    }
     warning.add(
         sections[p].location(), platform.name,
         fmt::format("platform '{}' moves up to {:.4g} m in an interval of {:g} s, but its emitters are "
                     "where they are at the volume's time, as all platforms: an interval of {:g} s "
                     "keeps it within a voxel ({:.4g} m)",
-                    platform.name, farthest_m, interval_s, std::floor(fits_s / digit_s) * digit_s, voxel_m));
+                    platform.name, farthest_m, interval_s, fits_s, voxel_m));
   }
   warning.addTo(context.problems);
 }

@@ -132,6 +132,13 @@ TEST(LikelyMistakes, BeamsBetweenTheVoxelsAreToldWithWhatHelps) {
   const std::size_t from = told.find(before) + before.size();
   const std::string finer = told.substr(from, told.find(']', from) + 1 - from);
   EXPECT_THAT(narrowBeamOf({{"region.dims", finer}}), Not(HasSubstr("narrower than the voxels"))) << finer;
+  EXPECT_THAT(
+      narrowBeamOf({{"region.dims", "[80, 80, 400]"}, {"emitters.radar.antenna.beamwidth_az_deg", "0.1"}}),
+      AllOf(HasSubstr("narrower than the voxels"), Not(HasSubstr("region: {dims"))))
+      << "no more voxels than a scenario may have";
+  EXPECT_THAT(
+      narrowBeamOf({{"region.size_m", "[1, 1, 4e6]"}, {"emitters.radar.antenna.beamwidth_el_deg", "0.001"}}),
+      Not(HasSubstr("region: {dims")));
   EXPECT_THAT(narrowBeamOf({{"output.radar_look", "target"}}),
               HasSubstr("does not turn, also with 'radar_look: target': 'scan: {kind: rotate, rate_rpm: 12}' "
                         "turns it"));
@@ -358,9 +365,21 @@ TEST(ScenarioWarnings, TellOfWhatIsHeldDuringAnInterval) {
              of_motion = HasSubstr("platform 'helicopter' moves up to ");
   EXPECT_THAT(over("{kind: cumulative, seconds: 10}", turning), of_beam);
   EXPECT_THAT(over("{kind: instant}", turning), Not(of_beam));
+  std::vector<Edit> idle = turning;
+  idle.push_back({"emitters.stand-off jammer.frequency_hz", "9e9"});
+  EXPECT_THAT(over("{kind: cumulative, seconds: 10}", idle), Not(of_beam));
   EXPECT_THAT(over("{kind: cumulative, seconds: 10}"), Not(of_beam));
   EXPECT_THAT(over("{kind: cumulative, seconds: 60}"), of_motion);
   EXPECT_THAT(over("{kind: cumulative, seconds: 0.1}"), Not(of_motion));
+  for (const double seconds : {20, 41, 60, 77, 90}) {  // the remedy
+    const std::string told = over(fmt::format("{{kind: cumulative, seconds: {}}}", seconds).c_str());
+    const std::string before = "as all platforms: an interval of ";
+    const std::size_t at = told.find(before);
+    ASSERT_NE(at, std::string::npos) << told;
+    const double fits_s = std::stod(told.substr(at + before.size()));
+    EXPECT_GT(fits_s, 0);
+    EXPECT_THAT(over(fmt::format("{{kind: cumulative, seconds: {}}}", fits_s).c_str()), Not(of_motion));
+  }
   EXPECT_THAT(over("{kind: instant}"), Not(of_motion));
   const std::vector<Edit> two{
       {"output.combine", "sum"},
