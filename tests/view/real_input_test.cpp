@@ -63,6 +63,15 @@ TEST_F(RealInput, TypedNumbersAreTakenWhenAnotherFieldIsClicked) {
   EXPECT_EQ(log("edit")[1]["value"], "7");
 }
 
+TEST_F(RealInput, ADigitThatOpensASelectedRowIsTakenWhenARowAboveIsClicked) {
+  open(quick());
+  ASSERT_TRUE(xdotool(click(kLosses) + " sleep 0.3" + type("7") + " sleep 0.3" + click(kFrequency)));
+  EXPECT_TRUE(commandsBecome("set")) << commands();
+  ASSERT_TRUE(comesToLog("edit"));
+  EXPECT_EQ(log("edit")[0]["path"], "emitters.radar.losses_db");
+  EXPECT_EQ(log("edit")[0]["value"], "7");
+}
+
 TEST_F(RealInput, KeysWithControlTakeTheNumberThatIsBeingTypedAndThenAct) {
   const std::string input = folder_ / "a.yaml";
   writeFile(input, readFile(quick()));

@@ -1,8 +1,10 @@
 /// Opening, recent files, autosave, recording: file operations of a session, without a window.
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <thread>
 
 #include "apps/view/files/recent_files.h"
@@ -549,6 +551,23 @@ TEST_F(Opener, RecordsThePicturesOfTheWindow) {
   const render::ImageDifference difference = render::compare(
       render::readPng(folder_ / "picture.png"), render::readPng(folder_ / "frames/quick_0003.png"));
   for (const int max : difference.max) EXPECT_LE(max, 1);
+}
+
+// The window is drawn when update() is true.
+TEST_F(Opener, TheProgressAndTheEndOfARecordingAreDrawn) {
+  ASSERT_TRUE(shown_.settle());
+  shown_.perform(fmt::format(R"({{"do":"record","file":"{}"}})", folder_ / "frames"));
+  const auto begin = std::chrono::steady_clock::now();
+  std::set<int> told;  // numbers of pictures
+  bool is_end_drawn = false;
+  while (!is_end_drawn && std::chrono::steady_clock::now() - begin < std::chrono::minutes(1)) {
+    const bool is_drawn = shown_->update();
+    if (is_drawn) told.insert(shown_.files->recorder.progress().pictures);
+    is_end_drawn = is_drawn && shown_->notice().text.find("recorded 5") == 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(is_end_drawn);
+  EXPECT_GE(told.size(), 2u) << "also in between";
 }
 
 TEST_F(Opener, AVideoInNoFolderIsRefused) {

@@ -117,6 +117,7 @@ bool Session::perform(const Command& command) {
 
 void Session::tell(const std::string& text, bool is_error) {
   notice_ = {text, is_error, log_.now_s()};
+  touched_ = true;
   log_.write(is_error ? "error" : "notice", {{"text", text}});
 }
 
@@ -229,6 +230,11 @@ bool Session::update() {
       perform({"quit", {{"edits", quit_answers_.value("edits", "ask")}}});
     }
   }
+  if (files_->recorder.running()) {
+    const Recorder::Progress progress = files_->recorder.progress();
+    const std::pair<int, int> shown{progress.pictures, progress.total};
+    if (std::exchange(recorded_, shown) != shown) touched_ = true;
+  }
   takeChangedFiles();
   if (asks_to_restore_ && !isOccupied()) {
     asks_to_restore_ = false;
@@ -259,8 +265,8 @@ std::optional<double> Session::nextUpdate_s() const {
                                     : std::min(2 * kRedraw_s, timeline_.untilNextStep_s().value_or(1));
   if (options_.stream) return untilStream_s();
   if (computing_from_s_) return kProgress_s;
-  if (!notice_.text.empty()) return 0.5;
   if (files_->recorder.running() || files_->browser.reading()) return 0.1;
+  if (!notice_.text.empty()) return 0.5;
   if (status_.warnings != joined_warnings_) return 0.5;
   if (keep_at_s_) return std::max(0.0, *keep_at_s_ - log_.now_s());
   return std::nullopt;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/view/commands/command.h"
@@ -461,8 +462,9 @@ class Session {
   ProbeHistory history_;
   playback::UndoStack<std::vector<render::CutPlane>> planes_;  // those of the view
   UndoOrder undo_order_;
-  bool dragging_ = false;  // the colours
-  bool touched_ = false;   // by a command since the last update()
+  bool dragging_ = false;           // the colours
+  std::pair<int, int> recorded_{};  // pictures that the progress of a recording shows, and their number
+  bool touched_ = false;            // by a command since the last update()
   std::shared_ptr<Files> files_;
   std::string saved_as_;                                  // the file of a name that the user gave
   std::string saved_file_;                                // view file that ...

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include "apps/view/session/session.h"
+#include "base/files/descriptor.h"
 #include "emscape/base/error.h"
+#include "playback/pictures/picture_sink.h"
 
 namespace emscape::view {
 namespace {
@@ -80,6 +82,11 @@ std::vector<Verb> Session::recordVerbs() {
          if (command.has("width")) {
            range.size = render::ImageSize{static_cast<int>(command.number("width")),
                                           static_cast<int>(command.number("height"))};
+         }
+         const std::filesystem::path output = command.text("file");
+         if (!output.empty()) {
+           playback::checkPictureOutput(output);
+           if (output.has_extension()) openFolderOf(output);  // before a question, and the work
          }
          const bool records = session.files_->recorder.running();  // refused below
          if (!records && session.asksToReplace(command, command.text("file"))) return;

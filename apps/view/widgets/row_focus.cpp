@@ -101,6 +101,7 @@ void RowFocus::beginFrame(bool is_behind_dialog) {
   if (!next_typing_.empty()) {
     typing_ = std::exchange(next_typing_, {});
     opened_text_ = next_text_;
+    selects_ = next_selects_;
     std::strncpy(text_.data(), next_text_.c_str(), text_.size() - 1);
     is_open_ = false;
     drawn_field_frame_ = drawn_frame_;
@@ -141,7 +142,7 @@ void RowFocus::type(const std::string& row, const std::string& text, bool select
   ImGui::ClearActiveID();  // the field has the identifier of the control that it replaces
   focused_ = next_typing_ = row;
   next_text_ = text;
-  selects_ = selects;
+  next_selects_ = selects;  // the field that is open gives its text in this frame
 }
 
 std::optional<std::string> RowFocus::drawField() {

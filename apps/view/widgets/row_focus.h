@@ -85,7 +85,7 @@ class RowFocus {
   std::string typing_, next_typing_;
   std::string opened_text_, next_text_;
   std::array<char, 4096> text_{};
-  bool selects_ = false, is_open_ = false, leaves_ = false;
+  bool selects_ = false, next_selects_ = false, is_open_ = false, leaves_ = false;
   int drawn_field_frame_ = -10;
 };
 
