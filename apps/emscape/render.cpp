@@ -14,6 +14,7 @@
 #include "apps/common/view_arguments.h"
 #include "apps/emscape/subcommands.h"
 #include "base/files/inputs.h"
+#include "base/files/own_file.h"
 #include "base/memory.h"
 #include "base/stopwatch.h"
 #include "base/worker.h"
@@ -277,6 +278,7 @@ void saveState(const RenderOptions& options, ViewState view, const Stage& stage)
   view.range = stage.range;
   const playback::LoadedScenario* scene = stage.source->scene();
   view.edits = scene != nullptr ? scene->scenario->edits() : std::vector<scenario::Edit>{};
+  requireOwn(options.save_state);  // it may have come during the work
   playback::writeViewState(options.save_state, view);
   logInfo("wrote " + options.save_state);
 }

@@ -10,6 +10,7 @@
 #include "emscape/base/work.h"
 #include "emscape/emfield/columns/terrain_mesh.h"
 #include "emscape/playback/frames/scene.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/volume/format/file.h"
 #include "playback/frames/difference_source.h"
 #include "playback/frames/platform_tracks.h"
@@ -319,6 +320,14 @@ const volume::Volume& comparableVolume(const Frame& frame) {
 
 namespace {
 
+LoadedScenario scenarioOf(const FrameSelection& selection) {
+  if (!selection.opened) return loadScenarioWithTerrain(selection.input, selection.edits);
+  LoadedScenario loaded;
+  loaded.scenario = scenario::withEdits(*selection.opened, selection.edits);
+  loaded.terrain = scenario::loadTerrain(*loaded.scenario);
+  return loaded;
+}
+
 std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const ComputeTarget& target,
                                        const StopFlag* stop) {
   const InputKind kind = inputKindOf(selection.input);
@@ -332,8 +341,7 @@ std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const Co
   }
   switch (kind) {
     case InputKind::scenario:
-      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input, selection.edits),
-                                              selection, target, stop);
+      return std::make_unique<ComputedFrames>(scenarioOf(selection), selection, target, stop);
     case InputKind::volume:
     case InputKind::mesh:
       return std::make_unique<StoredFrames>(selection, stop);
@@ -359,6 +367,7 @@ FrameSelection referenceOf(const FrameSelection& selection) {
     return reference;
   }
   reference.input = selection.compare;
+  reference.opened = nullptr;
   return reference;
 }
 
@@ -368,11 +377,13 @@ std::unique_ptr<FrameSource> openComparison(const FrameSelection& selection, con
   field.independent = true;
   const bool compares = !selection.compare.empty();
   if (compares) referenceOf(field);  // throws its faults here
+  std::unique_ptr<FrameSource> source = openField(field, target, stop);
+  if (inputKindOf(field.input) == InputKind::scenario) field.opened = source->scene()->scenario;
   const auto openReference = [field, target, stop] { return openField(referenceOf(field), target, stop); };
   const bool is_scenario = !compares || inputKindOf(referenceOf(field).input) == InputKind::scenario;
   const std::string name =
       !compares || selection.compare == kOriginal ? "the original scenario" : selection.compare;
-  return std::make_unique<DifferenceSource>(openField(field, target, stop), openReference,
+  return std::make_unique<DifferenceSource>(std::move(source), openReference,
                                             DifferenceReference{name, is_scenario, selection.cache_bytes},
                                             selection.comparison());
 }

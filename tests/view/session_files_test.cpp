@@ -1,6 +1,7 @@
 /// Opening, recent files, autosave, recording: file operations of a session, without a window.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -568,6 +569,47 @@ TEST_F(Opener, TheProgressAndTheEndOfARecordingAreDrawn) {
   }
   EXPECT_TRUE(is_end_drawn);
   EXPECT_GE(told.size(), 2u) << "also in between";
+}
+
+// Its change is told, and taken with a reload alone.
+TEST_F(Opener, AnInputThatChangedOnTheDiskIsNotReadAgainForARecordingOrAComparison) {
+  const auto write = [this](bool has_radar) {
+    ownScenario(folder_, "power_w: 10000",
+                has_radar ? "power_w: 10000" : "power_w: 10000\n    enabled: false");
+  };
+  struct Pictures {
+    render::Image8 recorded, original;
+  };
+  const auto picturesOf = [&](bool has_radar_at_first, bool has_radar_then) {
+    write(has_radar_at_first);
+    shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", folder_ / "own.yaml"));
+    EXPECT_TRUE(waitUntilOpened(shown_, opener_));
+    EXPECT_TRUE(shown_.settle());
+    write(has_radar_then);
+    const std::string recorded = folder_ / "recorded.png", split = folder_ / "split.png";
+    shown_.perform(
+        fmt::format(R"({{"do":"record","file":"{}","begin_s":0,"end_s":0,"replace":true}})", recorded));
+    EXPECT_TRUE(waitUntilRecorded(shown_));
+    shown_.perform(R"({"do":"set","path":"emitters.transmitter.enabled","value":"false"})");
+    shown_.perform(R"({"do":"split","position":1})");
+    EXPECT_TRUE(shown_.settle());
+    shown_.perform(fmt::format(R"({{"do":"picture","file":"{}","replace":true}})", split));
+    EXPECT_TRUE(shown_.settle());
+    shown_.perform(R"({"do":"revert"})");
+    return Pictures{render::readPng(recorded), render::readPng(split)};
+  };
+  /// Number of bytes that differ clearly.
+  const auto differing = [](const render::Image8& one, const render::Image8& other) {
+    int count = 0;
+    for (std::size_t n = 0; n < one.rgba.size(); ++n) count += std::abs(one.rgba[n] - other.rgba[n]) > 4;
+    return count;
+  };
+  const Pictures with = picturesOf(true, true), without = picturesOf(false, false);
+  const Pictures found = picturesOf(true, false);
+  EXPECT_GT(differing(with.recorded, without.recorded), 100);
+  EXPECT_GT(differing(with.original, without.original), 100);
+  EXPECT_LT(differing(found.recorded, with.recorded), 10);
+  EXPECT_LT(differing(found.original, with.original), 10);
 }
 
 TEST_F(Opener, AVideoInNoFolderIsRefused) {

@@ -29,6 +29,7 @@ bool isVideo(const std::string& output) {
 void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(int, int)>& done) {
   playback::FrameSelection selection(job.view);
   selection.times = job.times;
+  selection.opened = job.opened;
   selection.independent = true;  // each picture equals the window's at its time
   const auto source = playback::openFrameSource(selection, job.target, {}, &stop);
   std::vector<std::unique_ptr<playback::PictureSink>> sinks;

@@ -56,7 +56,8 @@ class FieldTimes {
 /// The view to draw, and the output.
 struct RecordJob {
   playback::ViewState view;
-  std::string times;  ///< as FrameSelection::times
+  std::shared_ptr<const scenario::Scenario> opened;  ///< as FrameSelection::opened
+  std::string times;                                 ///< as FrameSelection::times
   playback::ComputeTarget target;
   double frames_per_s = 10;
   std::string output;  ///< NAME.mp4, NAME.png (one time) or a folder

@@ -18,6 +18,7 @@ void Session::record(const RecordRange& range, const std::string& output, Replac
   if (output.empty()) throw Error(ErrorCode::bad_input, "record: name a folder, a .mp4 or a .png");
   RecordJob job;
   job.view = viewState();
+  if (edits_ && view_.scenario.empty() && scenario()->source) job.opened = scenario();
   if (range.size) job.view.size = *range.size;
   job.times = recordTimes(range);
   job.target = target_;

@@ -84,6 +84,9 @@ struct FrameSelection : FieldChoice {
   bool independent = false;
   /// Limit of the cached volumes of the reference; the last one is kept in any case.
   std::size_t cache_bytes = std::size_t{512} << 20;
+  /// If `input` is a scenario: as it was read, with any edits; its file, which may have changed since, is not
+  /// read again. Null: it is read.
+  std::shared_ptr<const scenario::Scenario> opened;
 
   FrameSelection() = default;
   explicit FrameSelection(const FieldChoice& choice) : FieldChoice(choice) {}
