@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/files/folder.h"
+#include "base/files/folder_lock.h"
 #include "base/files/unfinished_file.h"
 #include "base/files/whole_file.h"
 #include "emscape/base/error.h"
@@ -54,11 +55,11 @@ class OnePng : public PictureSink {
 class PngFolder : public PictureSink {
  public:
   PngFolder(fs::path folder, const std::string& name, int pictures, std::string comment, Replaces replaces)
-      : folder_(std::move(folder)),
+      : folder_(made(std::move(folder))),
         name_(fileNameOf(name)),
+        lock_(folder_, '.' + name_ + ".lock"),
         comment_(std::move(comment)),
         replaces_(replaces) {
-    makeFolder(folder_);
     removeAbandonedFiles(folder_);
     for (const int number : numbersIn(folder_)) {
       if (replaces == Replaces::own && number <= pictures) requireOwn(fileOf(number));
@@ -80,6 +81,10 @@ class PngFolder : public PictureSink {
   }
 
  private:
+  static fs::path made(fs::path folder) {
+    makeFolder(folder);
+    return folder;
+  }
   fs::path fileOf(int number) const { return volume::seriesFile(folder_, name_, number, "png"); }
   /// The number in a picture's name; 0: it is not a picture of the series.
   int numberOf(const fs::path& file) const {
@@ -101,7 +106,9 @@ class PngFolder : public PictureSink {
   }
 
   const fs::path folder_;
-  const std::string name_, comment_;
+  const std::string name_;
+  const FolderLock lock_;  // the pictures of two runs would be mixed
+  const std::string comment_;
   const Replaces replaces_;
   int last_ = 0;  ///< number of the last picture
 };

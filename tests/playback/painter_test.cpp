@@ -145,9 +145,14 @@ TEST(PictureSink, WritesOnePngOrANumberedFolder) {
   one->add(1, picture, 1);
   one->finish();
   EXPECT_TRUE(std::filesystem::exists(folder / "one.png"));
-  const auto several = makePictureSink(folder / "frames", "a/b", 2, picture.size, 10, "");
+  auto several = makePictureSink(folder / "frames", "a/b", 2, picture.size, 10, "");
   for (const int number : {1, 2}) several->add(number, picture, 1);
+  EXPECT_THAT(errorOf([&] { makePictureSink(folder / "frames", "a/b", 2, picture.size, 10, ""); }),
+              testing::HasSubstr("frames: another process writes this folder"));
+  makePictureSink(folder / "frames", "other", 1, picture.size, 10, "");
   several->finish();
+  several.reset();
+  EXPECT_EQ(folder.files().size(), 3u) << "no lock";
   folder.write("frames/a_b_0002.png", "mine");
   EXPECT_THAT(errorOf([&] { makePictureSink(folder / "frames", "a/b", 2, picture.size, 10, ""); }),
               testing::HasSubstr("a_b_0002.png: is a file that emscape did not write"));
