@@ -185,14 +185,34 @@ void UnfinishedFile::write(const std::function<void(std::ostream&)>& fill) {
   }
 }
 
+namespace {
+
+/// True if a file was neither replaced nor written between two looks at its name.
+bool isSame(const struct stat& a, const struct stat& b) {
+  const auto areSame = [](const timespec& x, const timespec& y) {
+    return x.tv_sec == y.tv_sec && x.tv_nsec == y.tv_nsec;
+  };
+  return a.st_dev == b.st_dev && a.st_ino == b.st_ino && a.st_size == b.st_size &&
+         areSame(a.st_mtim, b.st_mtim) && areSame(a.st_ctim, b.st_ctim);
+}
+
+}  // namespace
+
 int UnfinishedFile::rename(const std::string& name, const std::string& target, Replaces replaces) {
   const Descriptor opened(
       ::openat(own_folder_.number(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (!opened.isOpen()) return errno;
+  const auto statusOf = [&](struct stat& status) {
+    return ::fstatat(folder_.number(), target.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
+  };
+  struct stat replaced {};
+  const bool is_new = replaces == Replaces::own && !statusOf(replaced);
+  // Before the record, which may replace that of the former file.
+  if (replaces == Replaces::own && !is_new && !foreignText(file_.parent_path() / target).empty())
+    return EEXIST;
   if (const int cause = recordOwn(file_.parent_path() / target, opened); cause != 0) return cause;
   struct stat former {};  // who may read a file does not change because it is written anew
-  const bool has_former = ::fstatat(folder_.number(), target.c_str(), &former, AT_SYMLINK_NOFOLLOW) == 0 &&
-                          S_ISREG(former.st_mode) && former.st_uid == ::geteuid();
+  const bool has_former = statusOf(former) && S_ISREG(former.st_mode) && former.st_uid == ::geteuid();
   if (has_former && ::fchmod(opened.number(), former.st_mode & 0777) != 0) return errno;
   struct stat own {};
   if (::fsync(opened.number()) != 0 || ::fstat(opened.number(), &own) != 0) return errno;
@@ -200,11 +220,8 @@ int UnfinishedFile::rename(const std::string& name, const std::string& target, R
   const auto renamed = [&](unsigned flags) {
     return ::renameat2(own_folder_.number(), name.c_str(), folder_.number(), target.c_str(), flags) == 0;
   };
-  bool is_new = false;
-  if (replaces == Replaces::own) {  // again, as reading and flushing a large file takes seconds
-    is_new = ::fstatat(folder_.number(), target.c_str(), &former, AT_SYMLINK_NOFOLLOW) != 0;
-    if (!is_new && !foreignText(file_.parent_path() / target).empty()) return EEXIST;
-  }
+  // Reading and flushing a large file takes seconds.
+  if (replaces == Replaces::own && !is_new && !(statusOf(former) && isSame(former, replaced))) return EEXIST;
   if (renamed(is_new || replaces == Replaces::nothing ? RENAME_NOREPLACE : 0)) return 0;
   if (errno != EINVAL && errno != ENOSYS) return errno;
   if (is_new) return renamed(0) ? 0 : errno;
@@ -233,7 +250,7 @@ void UnfinishedFile::requireStillOwn(const fs::path& file) {
 
 void UnfinishedFile::publish(const std::string& beside) {
   const std::string name = file_.filename();
-  if (replaces_ == Replaces::own) requireStillOwn(file_);
+  if (replaces_ == Replaces::own && !beside.empty()) requireStillOwn(file_);  // before the one beside it
   if (!beside.empty()) requireStillOwn(file_.string() + beside);
   if (!beside.empty()) {
     const int cause = rename(name + beside, name + beside, Replaces::any);

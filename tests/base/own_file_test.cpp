@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 #include <sys/xattr.h>
 
 #include <chrono>
+#include <memory>
 #include <thread>
 
 #include "base/files/file_patch.h"
@@ -164,6 +166,23 @@ TEST_F(OwnFile, IsListedInItsFolderIfItsAttributeCannotBeWritten) {
   EXPECT_FALSE(isOwn(folder_ / "b")) << "of another name";
   test::writeFile(file, "tWO");
   EXPECT_FALSE(isOwn(file));
+}
+
+TEST_F(OwnFile, IsReplacedByAnotherContentWhereThereAreNoAttributes) {
+  const std::string place = folder_ / "mounted";
+  fs::create_directory(place);
+  if (::mount("none", place.c_str(), "ramfs", 0, nullptr) != 0) GTEST_SKIP() << "nothing may be mounted";
+  const auto unmount = [](const std::string* mounted) { ::umount2(mounted->c_str(), MNT_DETACH); };
+  const std::unique_ptr<const std::string, decltype(unmount)> mounted(&place, unmount);
+  for (const std::string text : {"one", "two, longer", "three"}) {
+    EXPECT_NO_THROW(write("mounted/a", text));
+    EXPECT_EQ(test::readFile(place + "/a"), text);
+    EXPECT_TRUE(isOwn(place + "/a"));
+  }
+  test::writeFile(place + "/a", "mine");
+  EXPECT_THAT(test::errorOf([&] { write("mounted/a", "four"); }, ErrorCode::usage),
+              HasSubstr("/a: is a file"));
+  EXPECT_EQ(test::readFile(place + "/a"), "mine");
 }
 
 TEST_F(OwnFile, IsNotToldByAListThatIsALinkOrTooLarge) {

@@ -61,6 +61,7 @@ struct Typed {
   char file[1024] = "";
   double begin_s = 0, end_s = 0, step_s = 0, frames_per_s = 10;
   std::size_t preset = 0;
+  bool wants_focus = false;  ///< the file, as it may have been refused
 
   void setFile(const std::string& name) { std::snprintf(file, sizeof file, "%s", name.c_str()); }
   bool isVideo() const { return std::filesystem::path(file).extension() == ".mp4"; }
@@ -100,7 +101,11 @@ void drawOutput(PanelContext& context, Typed& typed) {
   if (!session.files().record_output.empty()) {
     typed.setFile(std::exchange(session.files().record_output, ""));
   }
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  const bool is_back = typed.wants_focus && ImGui::IsWindowFocused() && !session.panels.replace;
+  if (ImGui::IsWindowAppearing() || is_back) {
+    typed.wants_focus = false;
+    ImGui::SetKeyboardFocusHere();
+  }
   ImGui::SetNextItemWidth(360 * context.scale);
   ImGui::InputText("##file", typed.file, sizeof typed.file, ImGuiInputTextFlags_AutoSelectAll);
   tabStop();
@@ -234,7 +239,10 @@ void drawRecording(PanelContext& context, const Area& picture) {
   ImGui::TextDisabled("%s", "the same on the command line, with the view saved as VIEW.json (Ctrl+Shift+V):");
   ImGui::TextDisabled("%s", wrapped(commandLine(session, typed), 520 * context.scale).c_str());
   ImGui::Spacing();
-  if (defaultButton("Record")) session.perform(typed.command());
+  if (defaultButton("Record")) {
+    session.perform(typed.command());
+    typed.wants_focus = true;
+  }
   if (ImGui::Button("Back (Esc)")) session.panels.record = false;
   tabStop();
   endDialog();
